@@ -1,0 +1,76 @@
+# Everything works from a fresh clone: the first target that needs it sets up .venv with the pinned dependencies.
+# PYTHON=... chooses the interpreter; without it the first suitable one of these is taken.
+CANDIDATES := python3 python3.13 python3.12 python3.11
+PYTHON ?=
+BIN := .venv/bin
+STAMP := .venv/.stamp
+PIP := -m pip --disable-pip-version-check --quiet
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo test test-fast lint format docs bench bare constraints clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
+
+$(STAMP): pyproject.toml constraints.txt
+	@usable='import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))'; \
+	for python in $(or $(PYTHON),$(CANDIDATES)); do \
+		if "$$python" -c "$$usable" >/dev/null 2>&1; then found=$$python; break; fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+		echo "equipoise needs Python 3.11, 3.12 or 3.13 with its venv module; tried: $(or $(PYTHON),$(CANDIDATES))." >&2; \
+		echo "Install one (on Debian: apt-get install python3 python3-venv) or name it: make PYTHON=/path/to/python3.12" >&2; \
+		exit 1; \
+	fi; \
+	echo "Setting up .venv with $$("$$found" --version) and the pinned dependencies: a minute or two"; \
+	"$$found" -m venv .venv
+	@$(BIN)/python $(PIP) install -c constraints.txt hatchling editables
+	@$(BIN)/python $(PIP) install -c constraints.txt --no-build-isolation -e '.[dev]'
+	@touch $@
+
+demo: $(STAMP) ## the main job on a real robot, start to finish
+	@$(BIN)/equipoise demo
+
+test: $(STAMP) ## all tests
+	$(BIN)/python -m pytest -n 2
+
+test-fast: $(STAMP) ## the tests that are not marked slow
+	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+lint: $(STAMP) ## style, format, types, import contracts
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+format: $(STAMP) ## put the sources into the format that lint asks for
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+docs: $(STAMP) ## the documentation, into docs/_build/html
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+	@echo "Open docs/_build/html/index.html"
+
+bench: $(STAMP) ## the benchmarks
+	$(BIN)/python benchmarks/run.py
+
+bare: $(STAMP) ## install the wheel without extras into a throw-away environment and start it
+	@echo "Trying the bare install, without extras, in a throw-away environment"
+	@set -e; dir=$$(mktemp -d); trap 'rm -rf "$$dir"' EXIT; \
+	$(BIN)/python $(PIP) wheel --no-deps --no-build-isolation --wheel-dir "$$dir" .; \
+	$(BIN)/python -m venv "$$dir/venv"; \
+	"$$dir/venv/bin/python" $(PIP) install -c constraints.txt "$$dir"/equipoise-*.whl; \
+	cd "$$dir"; \
+	venv/bin/python -c 'import equipoise'; \
+	venv/bin/equipoise --help
+
+constraints: $(STAMP) ## compile constraints.txt anew from pyproject.toml (add UPGRADE=1 for the newest versions)
+	@CUSTOM_COMPILE_COMMAND='make constraints' $(BIN)/pip-compile --quiet $(if $(UPGRADE),--upgrade) \
+		--all-extras --build-deps-for editable --build-deps-for wheel --strip-extras --no-annotate \
+		--no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
+		--output-file constraints.txt pyproject.toml
+
+clean: ## remove what the other targets made
+	rm -rf .venv docs/_build build dist .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,52 @@
+"""equipoise designs the springs that make a robot weightless, and proves it.
+
+    import equipoise as eq
+
+    design = eq.design(eq.load("ur5.urdf"), span=3)
+    print(design.balance.exact, design.balance.residual.max)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._version import __version__
+from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from .spring import Spring
+
+if TYPE_CHECKING:
+    from .balance import Balance, check
+    from .io import load, save
+    from .synthesis import Design, design
+
+__all__ = [
+    "Balance",
+    "Body",
+    "Coupling",
+    "Design",
+    "Joint",
+    "Loop",
+    "Mechanism",
+    "PointMass",
+    "Spring",
+    "Workspace",
+    "check",
+    "design",
+    "load",
+    "save",
+]
+
+_LAZY = {"Balance": "balance", "check": "balance", "load": "io", "save": "io", "Design": "synthesis", "design": "synthesis"}
+
+
+def __getattr__(name: str) -> Any:
+    # what computes is imported on first use, so that `import equipoise` stays quick
+    if name in _LAZY:
+        from importlib import import_module
+
+        return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)
+    raise AttributeError(f"module 'equipoise' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

@@ -1,0 +1,203 @@
+"""The verdict: is a mechanism with its springs balanced, exactly or how nearly, and where is it worst?
+
+Everything is computed from the mechanism alone, so that no design method has to be trusted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from .energy.fourier import EXACT, MAX_TERMS, FourierEnergy, NoFourierForm
+from .energy.peak import climb
+from .energy.potential import Potential, State
+from .kinematics import Tree, sample
+from .kinematics.rotation import Array
+from .mechanism import Mechanism
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How the verdict was reached.
+
+    Attributes:
+        kind: "fourier", a proof over all configurations, or "sampled", with `reason` why there is no proof.
+        terms: of the Fourier form; max_coefficient: its largest non-constant coefficient [J].
+        samples: random poses used for everything that is not the proof.
+    """
+
+    kind: Literal["fourier", "sampled"]
+    samples: int
+    terms: int | None = None
+    max_coefficient: float | None = None
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Of each coordinate's holding torque [N m or N]: the largest magnitude and the root mean square, (n,) each."""
+
+    max: Array
+    rms: Array
+
+
+@dataclass(frozen=True)
+class SpringUse:
+    """The largest length [m] and force magnitude [N] of a spring over the poses."""
+
+    max_length: float
+    max_force: float
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What is true of a mechanism with its springs.
+
+    Attributes:
+        exact: the certificate proves that the energy is constant, to 1e-10 of what gravity has to be balanced.
+        unbalanced, residual: torque of gravity alone, and of gravity and springs.
+        bound: (n,) proved bound of the residual torque [N m or N], None where there is no Fourier form.
+        constant: mean of the total energy over the poses [J]; gravity, springs, total: its parts' [min, max].
+        worst_configuration, worst_torque: (n,) the pose of the largest residual torque, and the torque there.
+    """
+
+    mechanism: Mechanism
+    exact: bool
+    certificate: Certificate
+    unbalanced: Loads
+    residual: Loads
+    bound: Array | None
+    constant: float
+    gravity: Range
+    springs: Range
+    total: Range
+    worst_configuration: Array
+    worst_torque: Array
+    use: tuple[SpringUse, ...]
+
+    @cached_property
+    def relative(self) -> float:
+        """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
+        shares = [0.0]
+        units = np.array(self.mechanism.coordinate_units)
+        for unit in ("rad", "m"):
+            residual, unbalanced = (float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced))
+            if residual > 0:
+                shares.append(residual / unbalanced if unbalanced > 0 else np.inf)
+        return max(shares)
+
+    def balanced(self, tolerance: float = EXACT, torque: float | None = None) -> bool:
+        """Whether it is exact, or the residual stays within a share of the unbalanced torque, or within `torque`."""
+        if torque is not None:
+            return self.exact or bool(self.residual.max.max(initial=0) <= torque)
+        return self.exact or self.relative <= tolerance
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of ``equipoise check --json`` (plain numbers, lists and text)."""
+        n = len(self.mechanism.coordinates)
+        return {
+            "mechanism": self.mechanism.name,
+            "coordinates": list(self.mechanism.coordinates),
+            "exact": self.exact,
+            "certificate": {
+                "kind": self.certificate.kind,
+                "terms": self.certificate.terms,
+                "max_coefficient": self.certificate.max_coefficient,
+                "samples": self.certificate.samples,
+                "reason": self.certificate.reason,
+            },
+            "energy": {
+                "constant": self.constant,
+                "gravity": list(self.gravity),
+                "springs": list(self.springs),
+                "total": list(self.total),
+            },
+            "torque": {
+                "unbalanced": {"max": self.unbalanced.max.tolist(), "rms": self.unbalanced.rms.tolist()},
+                "residual": {"max": self.residual.max.tolist(), "rms": self.residual.rms.tolist()},
+                "bound": [None] * n if self.bound is None else self.bound.tolist(),
+            },
+            "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
+            "springs": [
+                {
+                    "name": spring.name,
+                    "body_a": spring.body_a,
+                    "p_a": list(spring.p_a),
+                    "body_b": spring.body_b,
+                    "p_b": list(spring.p_b),
+                    "stiffness": spring.stiffness,
+                    "free_length": spring.free_length,
+                    "max_length": use.max_length,
+                    "max_force": use.max_force,
+                }
+                for spring, use in zip(self.mechanism.springs, self.use, strict=True)
+            ],
+        }
+
+
+def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, max_terms: int = MAX_TERMS) -> Balance:
+    """Judge a mechanism with its springs.
+
+    Args:
+        samples: random poses; the mechanism's workspace says how many by default.
+        max_terms: a longer Fourier form is not computed, and the verdict rests on samples.
+
+    Raises:
+        UnsupportedError: the mechanism has loops.
+    """
+    tree = Tree.of(mechanism)
+    q = sample(tree, samples or mechanism.workspace.samples, seed)
+    potential = Potential(mechanism)
+    state = potential(q)
+    series, reason = _series(mechanism, max_terms)
+
+    # every reported extreme climbs on its own: torques, energies both ways, lengths both ways
+    def quantities(s: State) -> Array:
+        sums = np.stack([s.gravity, s.springs.sum(axis=1), s.energy], axis=1)
+        return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.length, -s.length])
+
+    best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
+    n, m = tree.n, len(mechanism.springs)
+    unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
+    worst = best_q[n + int(residual.argmax())] if n else q[0]
+    ranges = [(-float(minus), float(plus)) for minus, plus in zip(low, top, strict=True)]
+    return Balance(
+        mechanism=mechanism,
+        exact=series is not None and series.exact,
+        certificate=_certificate(series, reason, len(q)),
+        unbalanced=Loads(unbalanced, _rms(state.gravity_torque)),
+        residual=Loads(residual, _rms(state.torque)),
+        bound=None if series is None else series.torque_bound(),
+        constant=float(state.energy.mean()),
+        gravity=ranges[0],
+        springs=ranges[1],
+        total=ranges[2],
+        worst_configuration=worst,
+        worst_torque=potential(worst).torque[0],
+        use=tuple(
+            SpringUse(float(up), spring.stiffness * max(up - spring.free_length, spring.free_length + minus, 0.0))
+            for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
+        ),
+    )
+
+
+def _series(mechanism: Mechanism, max_terms: int) -> tuple[FourierEnergy | None, str | None]:
+    try:
+        return FourierEnergy(mechanism, max_terms), None
+    except NoFourierForm as why:
+        return None, str(why)
+
+
+def _certificate(series: FourierEnergy | None, reason: str | None, samples: int) -> Certificate:
+    if series is None:
+        return Certificate("sampled", samples, reason=reason)
+    return Certificate("fourier", samples, len(series.c), float(series.amplitude.max(initial=0)))
+
+
+def _rms(torque: Array) -> Array:
+    return np.sqrt(np.mean(torque**2, axis=0))

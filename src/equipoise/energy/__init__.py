@@ -1,0 +1,6 @@
+"""Potential energy: the obvious reference (`potential`) and its exact Fourier form (`fourier`)."""
+
+from .fourier import FourierEnergy, NoFourierForm
+from .potential import Potential
+
+__all__ = ["FourierEnergy", "NoFourierForm", "Potential"]

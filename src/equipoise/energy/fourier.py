@@ -1,0 +1,295 @@
+"""The energy as a finite Fourier series: the balance certificate (THEORY section 2).
+
+Every rotation is ``A0 + A1 exp(iq) + conj(A1) exp(-iq)``, so gravity and zero-free-length springs give
+
+    U(q) = sum_k c_k exp(i k.q)        (times powers of q_j where joint j slides)
+
+with finitely many terms. Exponentials and powers are linearly independent on any open set, so U is constant, and the
+mechanism balanced at **all** configurations, if and only if every coefficient but the constant one is zero.
+
+A stretch is written as a sum over bodies, ``d = sum_X R_WX v_X``, so that ``|d|^2 = sum_XY v_X' R_XY v_Y`` needs only
+relative rotations R_XY: along a path of m joints it has 3^m terms, and joints outside the path never appear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cached_property
+from math import lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics.rotation import Array, harmonics
+from ..kinematics.sampling import bounds
+from ..kinematics.tree import Link, Tree
+from ..mechanism import Mechanism
+from ..spring import Spring
+from .potential import lumped_masses
+from .series import Series
+
+MAX_TERMS = 200_000
+EXACT = 1e-10  # relative: what counts as zero
+MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
+
+
+class NoFourierForm(Exception):
+    """The energy has no finite Fourier form, or one that is too long; the message says which."""
+
+
+class Frames:
+    """Relative rotations and stretches of a tree as series. Integer frequencies: unit 1/`denominators` per radian."""
+
+    def __init__(self, tree: Tree, max_terms: int = MAX_TERMS) -> None:
+        self.tree = tree
+        self.max_terms = max_terms
+        ratios = [[_fraction(c) for c in row] for row in tree.C[tree.rotates]]
+        self.denominators = np.array([lcm(1, *(r.denominator for r in column)) for column in zip(*ratios, strict=True)])
+        if not ratios:
+            self.denominators = np.ones(tree.n, int)
+        self._chains: dict[tuple[int, int], Series] = {}
+
+    def stretch(self, body_a: int, body_b: int) -> dict[int, Series]:
+        """Z of THEORY section 1 as ``{X: V_X}``: the stretch is ``sum_X R_WX V_X z`` with z = [p_a; 1; p_b], V 3 x 7."""
+        to_a = np.hstack([np.eye(3), np.zeros((3, 4))])
+        to_b = np.hstack([np.zeros((3, 4)), np.eye(3)])
+        unit = np.eye(7)[None, 3]
+        parts: dict[int, list[Series]] = {}
+        for sign, body, point in ((-1, body_a, to_a), (1, body_b, to_b)):
+            parts.setdefault(body, []).append(self._constant(sign * point))
+            for X, step in self._origin(body):
+                parts.setdefault(X, []).append((step @ self._constant(unit)).scaled(sign))
+        return _nonzero(parts)
+
+    def moment(self, masses: list[tuple[int, float, Array]]) -> dict[int, Series]:
+        """``sum m p`` of the masses (body, m [kg], p [m]) as ``{X: v_X}`` with ``sum_X R_WX v_X``, v 3 x 1 [kg m]."""
+        parts: dict[int, list[Series]] = {}
+        for body, mass, p in masses:
+            parts.setdefault(body, []).append(self._constant(mass * p[:, None]))
+            for X, step in self._origin(body):
+                parts.setdefault(X, []).append(step.scaled(mass))
+        return _nonzero(parts)
+
+    def linear(self, row: Array, V: dict[int, Series]) -> Series:
+        """``row . sum_X R_WX V_X`` with a world vector `row` (3,); coefficients (T, 1, m)."""
+        left = self._constant(np.asarray(row)[None])
+        return self._sum([left @ self._relative(0, X) @ v for X, v in V.items()], V)
+
+    def quadratic(self, V: dict[int, Series]) -> Series:
+        """``|sum_X R_WX V_X|^2``: coefficients (T, m, m), symmetric."""
+        parts = []
+        for X, v in V.items():
+            parts.append(v.T @ v)
+            for Y, u in V.items():
+                if X < Y:
+                    cross = v.T @ self._relative(X, Y) @ u
+                    parts += [cross, cross.T]
+        return self._sum(parts, V)
+
+    def _sum(self, parts: list[Series], V: dict[int, Series]) -> Series:
+        if not parts:
+            return self._constant(np.zeros((1, 1)))
+        if sum(len(part) for part in parts) > 8 * self.max_terms:
+            raise NoFourierForm(f"its Fourier form has more than {self.max_terms:,} terms")
+        total = Series.sum(parts)
+        self._guard(len(total))
+        return total
+
+    def _guard(self, terms: int) -> None:
+        if terms > self.max_terms:
+            raise NoFourierForm(f"its Fourier form has more than {self.max_terms:,} terms")
+
+    def _constant(self, value: Array) -> Series:
+        return Series.constant(value, self.tree.n)
+
+    def _origin(self, body: int) -> Iterator[tuple[int, Series]]:
+        """The steps (X, step in X's frame, 3 x 1) whose sum over X is the body's origin."""
+        while body:
+            link = self.tree.link_of[body]
+            step = self._constant(link.p0[:, None])
+            if link.slide:
+                step = Series.sum([step, self._slide(link)])
+            yield link.parent, step
+            body = link.parent
+
+    def _slide(self, link: Link) -> Series:
+        """``R0 axis s`` with the joint's value ``s = C q + s0``: one term of degree one per coordinate."""
+        motion, n = link.motions[0], self.tree.n
+        direction = (link.R0 @ motion.axis)[:, None]
+        active = np.flatnonzero(self.tree.C[motion.row])
+        keys = np.zeros((1 + len(active), 2 * n), np.int32)
+        keys[np.arange(1, 1 + len(active)), n + active] = 1
+        values = np.concatenate([[self.tree.s0[motion.row]], self.tree.C[motion.row, active]])
+        return Series(keys, (values[:, None, None] * direction).astype(complex))
+
+    def _turn(self, link: Link) -> Series:
+        """The body's orientation in its base: ``R0`` times three terms for each rotation."""
+        turn = self._constant(link.R0)
+        for motion in link.motions:
+            if not motion.rotates:
+                continue
+            A0, A1 = harmonics(motion.axis)
+            phase = np.exp(1j * self.tree.s0[motion.row])
+            keys = np.zeros((3, 2 * self.tree.n), np.int32)
+            keys[1, : self.tree.n] = np.rint(self.tree.C[motion.row] * self.denominators)
+            keys[2] = -keys[1]
+            turn = turn @ Series(keys, np.stack([A0 + 0j, A1 * phase, (A1 * phase).conj()]))
+        return turn
+
+    def _chain(self, top: int, body: int) -> Series:
+        """R_top,body, with `top` above `body` along the bases."""
+        if top == body:
+            return self._constant(np.eye(3))
+        if (top, body) not in self._chains:
+            link = self.tree.link_of[body]
+            above, turn = self._chain(top, link.base), self._turn(link)
+            self._guard(len(above) * len(turn) // 3)  # equal terms are collected below: allow for some
+            product = (above @ turn).collected()
+            self._guard(len(product))
+            self._chains[top, body] = product
+        return self._chains[top, body]
+
+    def _relative(self, X: int, Y: int) -> Series:
+        above_x, above_y = self._bases(X), self._bases(Y)
+        top = next(body for body in above_x if body in above_y)
+        left, right = self._chain(top, X), self._chain(top, Y)
+        self._guard(len(left) * len(right) // 3)
+        product = (left.T @ right).collected() if len(left) > 1 else left.T @ right
+        self._guard(len(product))
+        return product
+
+    def _bases(self, body: int) -> list[int]:
+        path = [body]
+        while path[-1]:
+            path.append(self.tree.link_of[path[-1]].base)
+        return path
+
+
+class FourierEnergy:
+    """The energy of a mechanism as ``U(q) = Re sum_t c_t q^degree_t exp(i frequency_t . q)``.
+
+    Attributes:
+        frequency, degree: (T, n); the constant term is all zero.
+        c: (T,) complex [J, or J/m^degree].
+        scale: [J] the size of what has to be balanced: sum of m |g| lever arm (of k a b where there is no gravity).
+
+    Raises:
+        NoFourierForm: a spring has a free length, a coupling ratio is not a fraction, or there are too many terms.
+        UnsupportedError: the mechanism has loops.
+    """
+
+    def __init__(self, mechanism: Mechanism, max_terms: int = MAX_TERMS) -> None:
+        tree = Tree.of(mechanism)
+        frames = Frames(tree, max_terms)
+        self.tree = tree
+        springs = [spring_series(frames, spring) for spring in mechanism.springs]
+        total = Series.sum([gravity_series(frames), *springs])
+        n = tree.n
+        self.frequency = total.keys[:, :n] / frames.denominators
+        self.degree = total.keys[:, n:]
+        self.c = total.coef[:, 0, 0]
+        self.scale = _gravity_scale(frames) or sum(float(np.abs(s.coef[s.keys.any(axis=1)]).sum()) for s in springs)
+
+    @cached_property
+    def reach(self) -> Array:
+        """(n,) the largest value of a sliding coordinate [m], +-1 m when it has no range; 1 for an angle."""
+        lower, upper = bounds(self.tree)
+        return np.where(self.tree.turns, 1.0, np.maximum(np.abs(lower), np.abs(upper)))
+
+    @property
+    def varies(self) -> NDArray[np.bool_]:
+        """(T,) false for the constant term only."""
+        return self.frequency.any(axis=1) | self.degree.any(axis=1)
+
+    @cached_property
+    def amplitude(self) -> Array:
+        """(T,) the largest value of each term over the range [J], 0 for the constant."""
+        return np.where(self.varies, np.abs(self.c) * np.prod(self.reach**self.degree, axis=1), 0.0)
+
+    @property
+    def constant(self) -> float:
+        """The constant term [J]."""
+        return float(self.c[~self.varies].real.sum())
+
+    @property
+    def exact(self) -> bool:
+        """Whether the energy is constant: no term but the constant one above 1e-10 of `scale`, all taken together."""
+        return bool(self.amplitude.sum() <= EXACT * self.scale)
+
+    def torque_bound(self) -> Array:
+        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (slides within `reach`)."""
+        bound = self.amplitude @ np.abs(self.frequency)
+        for j, factor, degree in self._slides():
+            bound[j] += np.sum(np.abs(self.c) * factor * np.prod(self.reach**degree, axis=1))
+        return bound
+
+    def energy(self, q: Array) -> Array:
+        """(N,) energy [J] at `q` (N, n)."""
+        return self._terms(q, self.degree).sum(axis=1).real
+
+    def torque(self, q: Array) -> Array:
+        """(N, n) holding torque dU/dq [N m or N] at `q` (N, n)."""
+        torque = (1j * self._terms(q, self.degree) @ self.frequency).real
+        for j, factor, degree in self._slides():
+            torque[:, j] += (self._terms(q, degree) @ factor).real
+        return torque
+
+    def _terms(self, q: Array, degree: NDArray[np.int32]) -> NDArray[np.complex128]:
+        powers = np.prod(q[:, None] ** degree, axis=2)
+        return self.c * powers * np.exp(1j * (q @ self.frequency.T))
+
+    def _slides(self) -> Iterator[tuple[int, NDArray[np.int32], NDArray[np.int32]]]:
+        """For each sliding coordinate j: the factor (T,) and the degrees that d/dq_j leaves of the powers."""
+        for j in np.flatnonzero(self.degree.any(axis=0)):
+            degree = self.degree.copy()
+            degree[:, j] = np.maximum(degree[:, j] - 1, 0)
+            yield int(j), self.degree[:, j], degree
+
+
+def gravity_series(frames: Frames) -> Series:
+    """Gravity's energy [J] of all masses, spring masses included; coefficients (T, 1, 1)."""
+    g = np.array(frames.tree.mechanism.gravity)
+    return frames.linear(g, frames.moment(_masses(frames.tree))).scaled(-1)
+
+
+def spring_series(frames: Frames, spring: Spring) -> Series:
+    """The energy [J] of a zero-free-length spring; coefficients (T, 1, 1).
+
+    Raises:
+        NoFourierForm: it has a free length.
+    """
+    if spring.free_length > 0:
+        raise NoFourierForm(f"spring '{spring.name}' has a free length")
+    index, n = frames.tree.index, frames.tree.n
+    z = Series.constant(np.array([*spring.p_a, 1.0, *spring.p_b])[:, None], n)
+    V = frames.stretch(index[spring.body_a], index[spring.body_b])
+    return frames.quadratic({X: v @ z for X, v in V.items()}).scaled(spring.stiffness / 2)
+
+
+def _masses(tree: Tree) -> list[tuple[int, float, Array]]:
+    return [(tree.index[body], mass, p) for body, mass, p in lumped_masses(tree.mechanism) if mass]
+
+
+def _gravity_scale(frames: Frames) -> float:
+    """[J] sum of m |g| lever arm over all masses, before anything cancels."""
+    arms = (
+        float(np.abs(v.coef).sum(axis=0).max())
+        for mass in _masses(frames.tree)
+        for X, v in frames.moment([mass]).items()
+        if X or len(v) > 1  # a mass fixed to the world has nothing to balance
+    )
+    return sum(arms) * float(np.linalg.norm(frames.tree.mechanism.gravity))
+
+
+def _nonzero(parts: dict[int, list[Series]]) -> dict[int, Series]:
+    """Collect each body's terms and drop what cancels: the steps that both ends of a spring share."""
+    summed = {X: Series.sum(series) for X, series in parts.items()}
+    return {X: series for X, series in summed.items() if np.abs(series.coef).max() > 0}
+
+
+def _fraction(ratio: float) -> Fraction:
+    fraction = Fraction(float(ratio)).limit_denominator(MAX_DENOMINATOR)
+    if abs(float(fraction) - ratio) > 1e-15 * max(1.0, abs(ratio)):
+        raise NoFourierForm(f"a coupling ratio ({ratio:g}) is not a fraction with a denominator below 1000")
+    return fraction

@@ -1,0 +1,54 @@
+"""Mechanism files: `load` reads YAML and URDF, `save` writes YAML."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from ..mechanism import Mechanism
+
+YAML_SUFFIXES = (".yaml", ".yml")
+URDF_SUFFIXES = (".urdf", ".xml")
+
+
+def load(path: str | os.PathLike[str]) -> Mechanism:
+    """Read a mechanism file; the suffix says which kind: .yaml or .yml, .urdf or .xml.
+
+    Raises:
+        InputError: everything that is wrong with the file, with file, line and column.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix in YAML_SUFFIXES:
+        from . import yaml
+
+        return yaml.read(path)
+    if suffix in URDF_SUFFIXES:
+        from . import urdf
+
+        return urdf.read(Path(path))
+    found = f"a mechanism file cannot be {_suffix(path)}"
+    raise InputError(Fault((), found, (*YAML_SUFFIXES, *URDF_SUFFIXES), file=os.fspath(path)))
+
+
+def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
+    """Write a mechanism as YAML, whole or not at all; `load` gives an equal mechanism back.
+
+    Raises:
+        InputError: the suffix is not .yaml or .yml, or the file cannot be written.
+    """
+    if Path(path).suffix.lower() not in YAML_SUFFIXES:
+        found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
+        raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
+    from . import yaml
+    from .files import write_text
+
+    write_text(path, yaml.to_text(mechanism))
+
+
+def _suffix(path: str | os.PathLike[str]) -> str:
+    suffix = Path(path).suffix
+    return f"'{suffix}'" if suffix else "a file without a suffix"

@@ -1,0 +1,91 @@
+"""Reading and writing text files, with errors that say what to change."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from ..errors import Fault, InputError
+
+MAX_BYTES = 20_000_000
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """The text of a UTF-8 file of at most 20 MB.
+
+    Raises:
+        InputError: no such file, a folder, unreadable, empty, too large, or not UTF-8 (with the line and column).
+    """
+    name = os.fspath(path)
+    try:
+        with open(name, "rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise _fault(name, f"cannot be read: {_reason(error)}") from error
+    if len(data) > MAX_BYTES:
+        raise _fault(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = data[: error.start]
+        line, column = before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1
+        fault = Fault((), f"is not UTF-8 text: byte 0x{data[error.start]:02x} here; save the file as UTF-8")
+        raise InputError(fault.at(name, line, column)) from error
+    if not text.strip():
+        raise _fault(name, "the file is empty")
+    return text
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a UTF-8 file whole or not at all: into a temporary file beside it, which then takes its place.
+
+    A file that exists keeps its permissions, a symbolic link stays one, and a device such as /dev/stdout is written to.
+
+    Raises:
+        InputError: the folder is missing or cannot be written to, the path is a folder, or the disk is full.
+    """
+    name = os.fspath(path)
+    try:
+        target = Path(os.path.realpath(name))
+        if target.is_dir():
+            raise IsADirectoryError
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8", newline="\n")
+        else:
+            _replace(target, text)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name, a text that UTF-8 cannot hold
+        raise _fault(name, f"cannot be written: {_reason(error)}") from error
+
+
+def _replace(target: Path, text: str) -> None:
+    mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
+    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".tmp", dir=target.parent)
+    try:
+        with open(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(temporary, mode)
+        os.replace(temporary, target)
+    except BaseException:  # also when interrupted: nothing is left behind
+        os.unlink(temporary)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)  # the only portable way to read it is to set it
+    os.umask(mask)
+    return mask
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, IsADirectoryError):
+        return "it is a folder"
+    if isinstance(error, FileNotFoundError):
+        return "no such file or folder"
+    return (getattr(error, "strerror", None) or str(error)).lower()
+
+
+def _fault(name: str, message: str) -> InputError:
+    return InputError(Fault((), message, file=name))

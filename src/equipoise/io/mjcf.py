@@ -1,0 +1,266 @@
+"""Write a mechanism as a MuJoCo model (MJCF). Nothing is imported from MuJoCo.
+
+Choices, where the two differ:
+
+- A spherical joint is a ball: its quaternion is ``Rx(q.x) Ry(q.y) Rz(q.z)``.
+- A parallelogram's child is a body of the parent. Its rotation relative to the parent undoes the joints from the common
+  ancestor to the parent and repeats those to `follows`: one hinge each, all through the child's origin, with the axis
+  turned round where it undoes, so that every replica has the angle of its original, to which an equality ties it.
+- A coupling with one term is an equality between two joints; with another number, a fixed tendon held at the offset.
+- A loop is a connect between two sites; a hinge loop has a second one, 0.1 m along the axes.
+- A locked joint (equal limits), which MuJoCo has not, is held by an equality.
+- MuJoCo wants mass and inertia on everything that moves: massless bodies are given 1e-13 kg and 1e-12 kg m^2.
+- Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import Literal
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from ..errors import EquipoiseWarning, UnsupportedError
+from ..mechanism import WORLD, Body, Joint, Loop, Mechanism, PointMass
+from ..spring import Vec3
+from .lint import impossible, principal
+from .replicas import Replicas, replicas
+from .rotation import from_rpy, to_quaternion
+from .text import Names, numbers
+
+RADIUS = 0.05
+"""Of the uniform sphere that stands for a body whose inertia is not known [m]."""
+HINGE_ARM = 0.1
+"""Between the two points that hold a hinge loop [m]."""
+MAX_DEPTH = 400
+"""Of nested bodies: MuJoCo's XML parser stops at 500 elements."""
+TYPES: dict[str, Literal["hinge", "slide", "ball"]] = {"revolute": "hinge", "prismatic": "slide", "spherical": "ball"}
+
+
+@dataclass(frozen=True)
+class JointValue:
+    """What a joint of the exported model is in terms of the mechanism's independent coordinates.
+
+    A hinge or slide is ``offset + sum(ratio * coordinate)`` [rad or m]. A ball's terms are its three coordinates, with
+    ratio 1, and its quaternion is that of the rotation ``Rx(first) @ Ry(second) @ Rz(third)``.
+    """
+
+    type: Literal["hinge", "slide", "ball"]
+    terms: tuple[tuple[str, float], ...]
+    offset: float = 0.0
+
+
+def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
+    """Every joint of the exported model, replicas and dependent joints included, from the coordinates.
+
+    Raises:
+        UnsupportedError: as `to_text`.
+    """
+    result: dict[str, JointValue] = {}
+    waiting = {coupling.joint: coupling for coupling in mechanism.couplings}
+    for joint in mechanism.joints:
+        if joint.type in TYPES and joint.name not in waiting:
+            names = [f"{joint.name}.{letter}" for letter in "xyz"] if joint.type == "spherical" else [joint.name]
+            result[joint.name] = JointValue(TYPES[joint.type], tuple((name, 1.0) for name in names))
+    types = {joint.name: joint.type for joint in mechanism.joints}
+    while waiting:  # each round settles those that depend on settled ones; there are no rings (see `validate`)
+        settled = [c for c in waiting.values() if all(other in result for other, _ in c.terms)]
+        for coupling in settled:
+            terms, offset = defaultdict(float), coupling.offset
+            for other, ratio in coupling.terms:
+                offset += ratio * result[other].offset
+                for coordinate, factor in result[other].terms:
+                    terms[coordinate] += ratio * factor
+            result[coupling.joint] = JointValue(TYPES[types[coupling.joint]], tuple(terms.items()), offset)
+            del waiting[coupling.joint]
+    for twin in replicas(mechanism).values():
+        result |= {hinge.name: result[hinge.original] for hinge in twin.hinges}
+    return result
+
+
+def to_text(mechanism: Mechanism) -> str:
+    """Write a mechanism as MJCF, with its springs as tendons, its point masses and the ends of heavy springs as bodies.
+
+    Gravity and masses are exact (to 1e-13 kg on massless bodies); there is no damping, friction or contact.
+
+    Raises:
+        UnsupportedError: a spherical joint lies between a parallelogram joint's parent and the body it follows.
+
+    Warns:
+        EquipoiseWarning: naming bodies whose inertia is unknown (a uniform sphere of radius 0.05 m is written) or
+            impossible (equal moments with the same sum are written). Neither affects balance, only motion.
+    """
+    twins = replicas(mechanism)
+    sites, connects = _sites(mechanism)
+    root = ET.Element("mujoco", model=mechanism.name)
+    ET.SubElement(
+        root, "compiler", angle="radian", autolimits="true", inertiafromgeom="false", balanceinertia="false",
+        boundmass="1e-13", boundinertia="1e-12",
+    )  # fmt: skip
+    option = ET.SubElement(root, "option", gravity=numbers(mechanism.gravity), timestep="0.001")
+    ET.SubElement(option, "flag", contact="disable")
+    ET.SubElement(ET.SubElement(root, "default"), "equality", solref="0.002 1")
+    _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
+    equality, tendon = ET.Element("equality"), ET.Element("tendon")
+    for spring in mechanism.springs:
+        length = numbers([spring.free_length] * 2)  # one number would leave a slack range from 0 to it
+        element = ET.SubElement(
+            tendon, "spatial", name=spring.name, stiffness=numbers([spring.stiffness]), springlength=length
+        )
+        for end in ("a", "b"):
+            ET.SubElement(element, "site", site=f"{spring.name}.{end}")
+    _couplings(equality, tendon, mechanism)
+    for joint in mechanism.joints:
+        if joint.range is not None and joint.range[0] == joint.range[1]:
+            ET.SubElement(equality, "joint", joint1=joint.name, polycoef=numbers([joint.range[0], 0, 0, 0, 0]))
+        for hinge in twins[joint.name].hinges if joint.name in twins else ():
+            ET.SubElement(equality, "joint", joint1=hinge.name, joint2=hinge.original, polycoef="0 1 0 0 0")
+    for site_a, site_b in connects:
+        ET.SubElement(equality, "connect", site1=site_a, site2=site_b)
+    root.extend(element for element in (tendon, equality) if len(element))
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _sites(m: Mechanism) -> tuple[dict[str, list[tuple[str, Vec3]]], list[tuple[str, str]]]:
+    """The sites of each body, and the pairs of sites that loops hold together."""
+    names, sites, connects = Names(), defaultdict(list), []
+    for spring in m.springs:
+        sites[spring.body_a].append((names.new(f"{spring.name}.a"), spring.p_a))
+        sites[spring.body_b].append((names.new(f"{spring.name}.b"), spring.p_b))
+    for i, loop in enumerate(m.loops):
+        for p_a, p_b in _loop_points(loop):
+            pair = names.new(f"loop{i}.a"), names.new(f"loop{i}.b")
+            sites[loop.body_a].append((pair[0], p_a))
+            sites[loop.body_b].append((pair[1], p_b))
+            connects.append(pair)
+    return sites, connects
+
+
+def _loop_points(loop: Loop) -> list[tuple[Vec3, Vec3]]:
+    points = [(loop.p_a, loop.p_b)]
+    if loop.axis_a is not None and loop.axis_b is not None:
+        points.append((_along(loop.p_a, loop.axis_a), _along(loop.p_b, loop.axis_b)))
+    return points
+
+
+def _along(p: Vec3, axis: Vec3) -> Vec3:
+    x, y, z = (np.asarray(p) + HINGE_ARM * np.asarray(axis) / np.linalg.norm(axis)).tolist()
+    return x, y, z
+
+
+def _couplings(equality: ET.Element, tendon: ET.Element, m: Mechanism) -> None:
+    names = Names(spring.name for spring in m.springs)
+    for coupling in m.couplings:
+        if len(coupling.terms) != 1:
+            name = names.new(f"{coupling.joint}.coupling")
+            element = ET.SubElement(tendon, "fixed", name=name)
+            for joint, ratio in ((coupling.joint, -1.0), *coupling.terms):
+                ET.SubElement(element, "joint", joint=joint, coef=numbers([-ratio]))
+            ET.SubElement(equality, "tendon", tendon1=name, polycoef=numbers([coupling.offset, 0, 0, 0, 0]))
+            continue
+        ((other, ratio),) = coupling.terms
+        polycoef = numbers([coupling.offset, ratio, 0, 0, 0])
+        ET.SubElement(equality, "joint", joint1=coupling.joint, joint2=other, polycoef=polycoef)
+
+
+def _bodies(
+    world: ET.Element,
+    m: Mechanism,
+    twins: dict[str, Replicas],
+    sites: dict[str, list[tuple[str, Vec3]]],
+) -> None:
+    """Fill the world with the tree of bodies, without recursion."""
+    inertias = _Inertias()
+    bodies = {body.name: body for body in m.bodies}
+    lumps, children = _lumps(m), defaultdict(list)
+    for joint in m.joints:
+        children[joint.parent].append(joint)
+    waiting = [(WORLD, world, 0)]
+    while waiting:
+        name, element, depth = waiting.pop()
+        if depth > MAX_DEPTH:
+            raise UnsupportedError(f"MJCF cannot hold a chain of more than {MAX_DEPTH} bodies, as that to '{name}'")
+        for site, position in sites[name]:
+            ET.SubElement(element, "site", name=site, pos=numbers(position))
+        for mass in lumps[name]:
+            lump = ET.SubElement(element, "body", name=mass.name, pos=numbers(mass.position))
+            inertias.write(lump, Body(mass.name, mass.mass, inertia=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
+        for joint in children[name]:
+            twin = twins.get(joint.name) or Replicas(from_rpy(joint.rpy), ())
+            quat = numbers(to_quaternion(twin.R_PC))
+            child = ET.SubElement(element, "body", name=joint.child, pos=numbers(joint.xyz), quat=quat)
+            inertias.write(child, bodies[joint.child])
+            for hinge in twin.hinges:
+                ET.SubElement(child, "joint", name=hinge.name, type="hinge", axis=numbers(hinge.axis), limited="false")
+            if joint.type in TYPES:
+                _joint(child, joint)
+            waiting.append((joint.child, child, depth + 1))
+    inertias.warn()
+
+
+def _joint(body: ET.Element, joint: Joint) -> None:
+    element = ET.SubElement(body, "joint", name=joint.name, type=TYPES[joint.type])
+    if joint.type != "spherical":
+        element.set("axis", numbers(joint.axis))
+    limited = joint.range is not None and joint.range[0] < joint.range[1]
+    element.set("limited", str(limited).lower())
+    if joint.range is not None and limited:
+        element.set("range", numbers(joint.range))
+
+
+def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:
+    """The point masses on each body, the ends of heavy springs included."""
+    names = Names(m.body_names)
+    masses = [replace(mass, name=names.new(mass.name)) for mass in m.masses if mass.mass]
+    for spring in m.springs:
+        ends = (
+            ("a", spring.body_a, spring.mass_split, spring.p_a),
+            ("b", spring.body_b, 1 - spring.mass_split, spring.p_b),
+        )
+        for letter, body, share, position in ends:
+            if spring.mass * share:
+                masses.append(PointMass(names.new(f"{spring.name}.{letter}"), body, spring.mass * share, position))
+    lumps = defaultdict(list)
+    for mass in masses:
+        lumps[mass.body].append(mass)
+    return lumps
+
+
+class _Inertias:
+    """Writes inertias that MuJoCo accepts, and remembers which ones it had to make up."""
+
+    def __init__(self) -> None:
+        self.unknown: list[str] = []
+        self.impossible: list[str] = []
+
+    def write(self, element: ET.Element, body: Body) -> None:
+        if not body.mass and not any(body.inertia or ()):
+            return
+        moments, axes = principal(body)
+        if body.inertia is None:
+            self.unknown.append(body.name)
+            moments, axes = np.full(3, 0.4 * body.mass * RADIUS**2), np.eye(3)
+        elif impossible(body):
+            self.impossible.append(body.name)
+            moments, axes = np.full(3, max(float(moments.mean()), 0.0)), np.eye(3)
+        low, middle, high = np.maximum(moments, 0.0).tolist()
+        # MuJoCo allows no rounding in the triangle inequality; `impossible` has let pass no more than that
+        high = min(high, low + middle)
+        ET.SubElement(
+            element, "inertial", pos=numbers(body.com), quat=numbers(to_quaternion(axes)), mass=numbers([body.mass]),
+            diaginertia=numbers([low, middle, high]),
+        )  # fmt: skip
+
+    def warn(self) -> None:
+        for names, what in (
+            (self.unknown, f"unknown inertia, a uniform sphere of radius {RADIUS} m was written"),
+            (self.impossible, "impossible inertia, equal moments with the same sum were written"),
+        ):
+            if names:
+                quoted = ", ".join(f"'{name}'" for name in names)
+                warnings.warn(f"bodies {quoted}: {what}; motion depends on it, balance does not", EquipoiseWarning,
+                              stacklevel=4)  # fmt: skip

@@ -1,0 +1,90 @@
+"""XML with the line of every element, and nothing but elements: no document type, no entities, no network."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from ..errors import Fault, InputError
+
+
+@dataclass(frozen=True)
+class Element:
+    """An element and its place, both counted from 1. Text content is dropped: neither URDF nor MJCF uses it."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    column: int
+    children: list[Element] = field(default_factory=list)
+
+    def find(self, tag: str) -> Element | None:
+        """The first child with this tag."""
+        return next(self.find_all(tag), None)
+
+    def find_all(self, tag: str) -> Iterator[Element]:
+        """The children with this tag."""
+        return (child for child in self.children if child.tag == tag)
+
+    def walk(self) -> Iterator[Element]:
+        """This element and everything below it, without recursion: a hostile file can nest without limit."""
+        waiting: list[Element] = [self]
+        while waiting:
+            element = waiting.pop()
+            yield element
+            waiting.extend(reversed(element.children))
+
+
+class Document:
+    """A parsed file.
+
+    Args:
+        text: the file's text.
+        file: its name, for errors.
+
+    Raises:
+        InputError: the text is not well-formed XML, or has a document type declaration, which could define entities.
+    """
+
+    def __init__(self, text: str, file: str) -> None:
+        self.file = file
+        self._lines = re.split(r"\r\n|\r|\n", text)  # what expat counts as lines; splitlines() counts more
+        self.root = self._parse(text)
+
+    def place(self, fault: Fault, element: Element) -> Fault:
+        """The fault, at the place of an element."""
+        return self._at(fault, element.line, element.column)
+
+    def _at(self, fault: Fault, line: int, column: int) -> Fault:
+        source = self._lines[line - 1] if line <= len(self._lines) else ""
+        return fault.at(self.file, line, column, source if len(source) <= 160 else source[:157] + "...")
+
+    def _parse(self, text: str) -> Element:
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        open_elements = [Element("", {}, 0, 0)]
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            element = Element(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+            open_elements[-1].children.append(element)
+            open_elements.append(element)
+
+        def end(_tag: str) -> None:
+            open_elements.pop()
+
+        def doctype(*_: object) -> None:
+            # expat reports the declaration before it reads any entity inside it
+            fault = Fault((), "a document type declaration (<!DOCTYPE ...>) is not accepted: remove it")
+            raise InputError(self._at(fault, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1))
+
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        parser.StartDoctypeDeclHandler = doctype
+        try:
+            parser.Parse(text, True)
+        except expat.ExpatError as error:
+            fault = Fault((), f"not well-formed XML: {expat.errors.messages[error.code]}")
+            raise InputError(self._at(fault, error.lineno, error.offset + 1)) from None
+        return open_elements[0].children[0]

@@ -1,0 +1,156 @@
+"""The mechanism file: YAML of schema 1 to a `Mechanism` and back, without loss."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+
+from ..errors import Fault, InputError, Path, nearest
+from ..mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from ..spring import Spring
+from ..units import to_si
+from . import URDF_SUFFIXES, dh
+from .emit import to_text
+from .files import read_text
+from .located import Located, parse
+from .schema import DIMENSION_OF, SCHEMA, MechanismFile, validate
+
+__all__ = ["read", "to_text"]
+_SINGULAR = {"bodies": "body", "joints": "joint", "couplings": "coupling"}
+
+
+def read(path: str | os.PathLike[str]) -> Mechanism:
+    """Read a mechanism file.
+
+    Raises:
+        InputError: with a fault for everything that is wrong, each with its file, line and column.
+    """
+    name = os.fspath(path)
+    located = parse(read_text(name), name)
+    file, found = validate(located.data)
+    if file is None or located.faults:
+        if isinstance(located.data, dict) and located.data.get("schema", SCHEMA) != SCHEMA:
+            found = [(fault, on_key) for fault, on_key in found if fault.path == ("schema",)]  # the rest means nothing
+        raise located.error(located.locate(fault, on_key) for fault, on_key in found)
+    return _mechanism(file, located)
+
+
+@dataclass(frozen=True)
+class _Origin:
+    """Where in the file an item of the mechanism comes from, and who made it if it is not written there."""
+
+    path: Path
+    maker: str = ""
+
+    def __str__(self) -> str:
+        return self.maker or Fault(self.path, "").field
+
+
+@dataclass
+class _Tree:
+    """Bodies, joints and couplings in the order of the mechanism, each with its origin."""
+
+    bodies: list[tuple[Body, _Origin]] = field(default_factory=list)
+    joints: list[tuple[Joint, _Origin]] = field(default_factory=list)
+    couplings: list[tuple[Coupling, _Origin]] = field(default_factory=list)
+
+
+def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
+    tree, faults = _tree(file, located)
+    try:
+        mechanism = Mechanism(
+            name=file.name,
+            bodies=tuple(body for body, _ in tree.bodies),
+            joints=tuple(joint for joint, _ in tree.joints),
+            couplings=tuple(coupling for coupling, _ in tree.couplings),
+            loops=tuple(Loop(**item.values()) for item in file.loops),
+            springs=tuple(Spring(**item.values()) for item in file.springs),
+            masses=tuple(PointMass(**item.values()) for item in file.masses),
+            gravity=file.gravity,
+            workspace=Workspace(**file.workspace.values()),
+            provenance=file.provenance,
+        )
+    except InputError as error:
+        raise located.error([*faults, *_translate(error.faults, tree)]) from None
+    if faults:
+        raise located.error(faults)
+    return mechanism
+
+
+def _tree(file: MechanismFile, located: Located) -> tuple[_Tree, list[Fault]]:
+    """The tree of the model, the dh table and the file itself, and the faults that do not hide others."""
+    tree = _Tree()
+    for key, other in (("joints", file.joints), ("model", file.model)):
+        if file.dh is not None and other:
+            raise located.error([Fault(("dh",), f"give either '{key}' or 'dh', not both")])
+    if file.model is not None:
+        model = _model(file.model, located)
+        origin = _Origin(("model",), "the model")
+        tree.bodies += [(body, origin) for body in model.bodies]
+        tree.joints += [(joint, origin) for joint in model.joints]
+        tree.couplings += [(coupling, origin) for coupling in model.couplings]
+    bodies = [Body(**item.values()) for item in file.bodies]
+    if file.dh is None:
+        tree.bodies += [(body, _Origin(("bodies", i))) for i, body in enumerate(bodies)]
+        tree.joints += [(Joint(**item.values()), _Origin(("joints", i))) for i, item in enumerate(file.joints)]
+    else:
+        if len(file.dh.rows) != len(bodies):
+            message = f"expected {len(bodies)} rows, one for each entry of 'bodies', found {len(file.dh.rows)}"
+            raise located.error([Fault(("dh", "rows"), message)])
+        with_axes, joints = dh.expand(file.dh, bodies)
+        tree.bodies += [(b, _Origin(("bodies", i), "" if b is bodies[i] else "the dh table")) for b, i in with_axes]
+        tree.joints += [(j, _Origin(("dh", "rows", i), "the dh table" if j.type == "fixed" else "")) for j, i in joints]
+    types = {joint.name: joint.type for joint, _ in tree.joints}
+    faults: list[Fault] = []
+    for i, item in enumerate(file.couplings):
+        offset = 0.0
+        if item.joint in types and types[item.joint] in DIMENSION_OF:  # if not, that is the fault
+            try:
+                offset = to_si(item.offset, DIMENSION_OF[types[item.joint]])
+            except ValueError as error:
+                faults.append(Fault(("couplings", i, "offset"), str(error)))
+        tree.couplings.append((Coupling(item.joint, tuple(item.terms.items()), offset), _Origin(("couplings", i))))
+    return tree, faults
+
+
+def _model(name: str, located: Located) -> Mechanism:
+    """The mechanism of a model file; its name is relative to the folder of the mechanism file."""
+    path = FilePath(located.file).parent / name
+    if path.suffix.lower() not in URDF_SUFFIXES:
+        raise located.error([Fault(("model",), f"'{name}' cannot be read: a model is a URDF file", URDF_SUFFIXES)])
+    if not path.is_file():
+        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in URDF_SUFFIXES)
+        raise located.error([Fault(("model",), f"there is no file {nearest(name, beside)}", tuple(beside[:12]))])
+    from . import urdf
+
+    try:
+        return urdf.read(path)
+    except InputError as error:
+        raise located.error([Fault(("model",), f"'{name}' cannot be used as a URDF model"), *error.faults]) from error
+
+
+def _translate(faults: Sequence[Fault], tree: _Tree) -> list[Fault]:
+    """Faults of the mechanism as faults of the file: its items are numbered differently with a model or a dh table."""
+
+    def origin_of(numbered: re.Match[str]) -> str:
+        return str(getattr(tree, numbered[1])[int(numbered[2])][1])
+
+    written, made = [], []
+    for fault in faults:
+        kind, index, *rest = (*fault.path, None, None)[: max(2, len(fault.path))]
+        message = re.sub(r"\b(bodies|joints|couplings)\[(\d+)\]", origin_of, fault.message)
+        if kind not in _SINGULAR or not isinstance(index, int):
+            written.append(replace(fault, message=message))
+            continue
+        item, origin = getattr(tree, kind)[index]
+        if origin.maker:
+            name = item.joint if kind == "couplings" else item.name
+            message = f"{_SINGULAR[kind]} '{name}' of {origin.maker}: {message}"
+        # a row of a dh table has no parent and no child: only a faulty body can make them faulty
+        from_others = bool(origin.maker) or (origin.path[0] == "dh" and rest[:1] not in (["name"], ["range"]))
+        path = origin.path if from_others else (*origin.path, *rest)
+        (made if from_others else written).append(replace(fault, path=path, message=message))
+    return written or made  # what is made from a faulty entry is faulty too: only the entry is worth showing

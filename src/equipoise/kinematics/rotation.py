@@ -1,0 +1,40 @@
+"""Rotation matrices."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def skew(v: ArrayLike) -> Array:
+    """The matrix of the cross product: ``skew(v) @ x == cross(v, x)``. v: (..., 3) -> (..., 3, 3)."""
+    v = np.asarray(v, float)
+    S = np.zeros((*v.shape[:-1], 3, 3))
+    S[..., 0, 1], S[..., 0, 2], S[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
+    return S - np.swapaxes(S, -1, -2)
+
+
+def from_rpy(rpy: ArrayLike) -> Array:
+    """Roll, pitch, yaw about the fixed x, y, z axes [rad] -> ``Rz(yaw) @ Ry(pitch) @ Rx(roll)``, (3, 3)."""
+    roll, pitch, yaw = np.asarray(rpy, float)
+    return about((0, 0, 1), yaw) @ about((0, 1, 0), pitch) @ about((1, 0, 0), roll)
+
+
+def about(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """Rotation by `angle` [rad], any shape, about a fixed unit `axis` (3,) -> (..., 3, 3) (Rodrigues' formula)."""
+    A0, A1 = harmonics(axis)
+    # the phase's real part multiplies 2 Re A1, its imaginary part -2 Im A1
+    angle = np.asarray(angle, float)[..., None, None]
+    return A0 + 2 * (np.cos(angle) * A1.real - np.sin(angle) * A1.imag)
+
+
+def harmonics(axis: ArrayLike) -> tuple[Array, NDArray[np.complex128]]:
+    """(A0, A1) with ``R(q) = A0 + A1 exp(iq) + conj(A1) exp(-iq)`` for the rotation about a unit `axis` (3,).
+
+    This is what makes the energy a finite Fourier series (THEORY section 2).
+    """
+    a = np.asarray(axis, float)
+    A0 = np.outer(a, a)
+    return A0, 0.5 * ((np.eye(3) - A0) - 1j * skew(a))

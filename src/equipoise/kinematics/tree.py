@@ -1,0 +1,217 @@
+"""Forward kinematics of trees, batched over configurations.
+
+A mechanism is compiled once to a `Tree`: bodies in an order in which each comes after its parent, and every joint
+as elementary motions (a spherical joint is three). The elementary joint values are ``s = C q + s0``: that one line
+is all there is to couplings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ..errors import UnsupportedError
+from ..mechanism import SINGLE, Joint, Mechanism
+from .rotation import Array, about, from_rpy
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One elementary motion: a rotation about (or a translation along) the unit vector `axis`, by value `row` of s."""
+
+    axis: Array
+    row: int
+    rotates: bool
+
+
+@dataclass(frozen=True)
+class Link:
+    """How body `body` hangs on its parent: ``R_WB = R_W,base R0 R(motions)``, ``p_WB = p_W,parent + R_W,parent ...``.
+
+    `base` is the body that carries the orientation: the parent, except for a parallelogram joint.
+    """
+
+    body: int
+    parent: int
+    base: int
+    joint: Joint
+    R0: Array
+    p0: Array
+    motions: tuple[Motion, ...]
+
+    @property
+    def slide(self) -> Motion | None:
+        """The prismatic motion, when there is one."""
+        return next((motion for motion in self.motions if not motion.rotates), None)
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it."""
+
+    R: Array
+    p: Array
+
+    def point(self, body: int, p: Array) -> Array:
+        """World position (N, 3) of the point `p` (3,) fixed in `body`."""
+        return self.p[:, body] + self.R[:, body] @ p
+
+
+@dataclass(frozen=True)
+class Velocities:
+    """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate."""
+
+    w: Array
+    v: Array
+
+    def point(self, poses: Poses, body: int, p: Array) -> Array:
+        """Velocity (N, 3, n) of the point `p` (3,) fixed in `body`."""
+        arm = poses.R[:, body] @ p
+        return self.v[:, body] + np.cross(self.w[:, body], arm[:, :, None], axis=1)
+
+
+class Tree:
+    """A mechanism compiled for kinematics. Make it with `Tree.of`, which remembers the last few.
+
+    Attributes:
+        names: body names, the world first; `index` maps a name to its number.
+        links: one per body but the world, parents before children.
+        C, s0: elementary joint values ``s = C q + s0``; C is (motions, n).
+        lower, upper: range of each motion, -inf and inf where there is none.
+        rotates: (motions,) whether it is a rotation.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        if mechanism.loops:
+            raise UnsupportedError(f"mechanism '{mechanism.name}': loops need the closed-loop solver")
+        self.mechanism = mechanism
+        self.names = mechanism.body_names
+        self.index = {name: i for i, name in enumerate(self.names)}
+        self.coordinates = mechanism.coordinates
+        self.n = len(self.coordinates)
+        rows = {name: row for row, name in enumerate(_motion_names(mechanism))}
+        self.links = tuple(self._links(rows))
+        self.C, self.s0 = _couplings(mechanism, rows)
+        ranges = {j.name: j.range for j in mechanism.joints if j.range is not None}
+        self.lower = np.array([ranges.get(name, (-np.inf, np.inf))[0] for name in rows])
+        self.upper = np.array([ranges.get(name, (-np.inf, np.inf))[1] for name in rows])
+        prismatic = {joint.name for joint in mechanism.joints if joint.type == "prismatic"}
+        self.rotates = np.array([name not in prismatic for name in rows], dtype=bool)
+
+    @staticmethod
+    @lru_cache(maxsize=32)
+    def of(mechanism: Mechanism) -> Tree:
+        """The compiled tree of `mechanism`.
+
+        Raises:
+            UnsupportedError: it has loops.
+        """
+        return Tree(mechanism)
+
+    def _links(self, rows: dict[str, int]) -> Iterator[Link]:
+        placed, waiting = {0}, list(self.mechanism.joints)
+        while waiting:
+            later = []
+            for joint in waiting:
+                parent, base = self.index[joint.parent], self.index[joint.follows or joint.parent]
+                if parent in placed and base in placed:
+                    placed.add(self.index[joint.child])
+                    R0, p0 = from_rpy(joint.rpy), np.array(joint.xyz, float)
+                    yield Link(self.index[joint.child], parent, base, joint, R0, p0, _motions(joint, rows))
+                else:
+                    later.append(joint)
+            waiting = later
+
+    @cached_property
+    def link_of(self) -> dict[int, Link]:
+        """Body number -> its link."""
+        return {link.body: link for link in self.links}
+
+    @cached_property
+    def coordinate_rows(self) -> Array:
+        """(n,) the motion row that is coordinate j itself."""
+        rows = {name: row for row, name in enumerate(_motion_names(self.mechanism))}
+        return np.array([rows[name] for name in self.coordinates], dtype=int)
+
+    @property
+    def turns(self) -> Array:
+        """(n,) whether each coordinate is an angle."""
+        return self.rotates[self.coordinate_rows]
+
+    def poses(self, q: Array) -> Poses:
+        """Body poses at configurations `q` (N, n) [rad or m]."""
+        N = len(q)
+        s = q @ self.C.T + self.s0
+        R = np.empty((N, len(self.names), 3, 3))
+        p = np.empty((N, len(self.names), 3))
+        R[:, 0], p[:, 0] = np.eye(3), 0.0
+        for link in self.links:
+            turn, shift = np.broadcast_to(link.R0, (N, 3, 3)), np.broadcast_to(link.p0, (N, 3))
+            for motion in link.motions:
+                if motion.rotates:
+                    turn = turn @ about(motion.axis, s[:, motion.row])
+                else:
+                    shift = shift + s[:, motion.row, None] * (link.R0 @ motion.axis)
+            R[:, link.body] = R[:, link.base] @ turn
+            p[:, link.body] = p[:, link.parent] + np.einsum("nij,nj->ni", R[:, link.parent], shift)
+        return Poses(R, p)
+
+    def velocities(self, q: Array, poses: Poses) -> Velocities:
+        """Analytic body velocities per unit rate of each coordinate, at `q` (N, n) with its `poses`."""
+        N, s = len(q), q @ self.C.T + self.s0
+        w = np.zeros((N, len(self.names), 3, self.n))
+        v = np.zeros_like(w)
+        for link in self.links:
+            B, P = link.body, link.parent
+            w[:, B] = w[:, link.base]
+            v[:, B] = v[:, P] + np.cross(w[:, P], (poses.p[:, B] - poses.p[:, P])[:, :, None], axis=1)
+            R = poses.R[:, link.base] @ link.R0
+            for motion in link.motions:
+                axis = (R @ motion.axis)[:, :, None]
+                if motion.rotates:
+                    w[:, B] += axis * self.C[motion.row]
+                    R = R @ about(motion.axis, s[:, motion.row])
+                else:
+                    v[:, B] += axis * self.C[motion.row]
+        return Velocities(w, v)
+
+
+def _motion_names(mechanism: Mechanism) -> list[str]:
+    names: list[str] = []
+    for joint in mechanism.joints:
+        if joint.type == "spherical":
+            names += [f"{joint.name}.{letter}" for letter in "xyz"]
+        elif joint.type in SINGLE:
+            names.append(joint.name)
+    return names
+
+
+def _motions(joint: Joint, rows: dict[str, int]) -> tuple[Motion, ...]:
+    if joint.type == "spherical":
+        return tuple(Motion(np.eye(3)[i], rows[f"{joint.name}.{letter}"], True) for i, letter in enumerate("xyz"))
+    if joint.type in SINGLE:
+        axis = np.array(joint.axis, float)
+        axis /= np.abs(axis).max()  # first, so that a very long or short axis does not overflow
+        return (Motion(axis / np.linalg.norm(axis), rows[joint.name], joint.type == "revolute"),)
+    return ()
+
+
+def _couplings(mechanism: Mechanism, rows: dict[str, int]) -> tuple[Array, Array]:
+    coordinates = mechanism.coordinates
+    C, s0 = np.zeros((len(rows), len(coordinates))), np.zeros(len(rows))
+    for j, name in enumerate(coordinates):
+        C[rows[name], j] = 1.0
+    waiting = {coupling.joint: coupling for coupling in mechanism.couplings}
+    while waiting:  # a coupling may name another dependent joint; validation has excluded rings
+        ready = [c for c in waiting.values() if not any(name in waiting for name, _ in c.terms)]
+        for coupling in ready:
+            row = rows[coupling.joint]
+            s0[row] = coupling.offset
+            for name, ratio in coupling.terms:
+                C[row] += ratio * C[rows[name]]
+                s0[row] += ratio * s0[rows[name]]
+            del waiting[coupling.joint]
+    return C, s0

@@ -1,0 +1,153 @@
+"""The mechanism: frozen values, with everything checked when it is made.
+
+Conventions (Drake's monogram notation): `p_AP` is the position of P in frame A, `R_WB` the rotation of body B in
+the world W. Lengths in m, angles in rad, masses in kg. A joint's child frame sits at `xyz`, `rpy` in the parent frame
+when its coordinate is zero, and moves about (or along) `axis`, given in the child frame: URDF's convention.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, get_args
+
+from .errors import InputError
+from .spring import Spring, Vec3
+
+WORLD = "world"
+JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
+JOINT_TYPES: tuple[str, ...] = get_args(JointType)
+SINGLE = ("revolute", "prismatic")  # the joints with one coordinate: only these have an axis, a range, a coupling
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body. `com` [m] in the body frame; `inertia` (ixx, iyy, izz, ixy, ixz, iyz) [kg m^2] about the com.
+
+    The products are the entries of the inertia matrix (URDF's sign), not the positive integrals.
+    """
+
+    name: str
+    mass: float = 0.0
+    com: Vec3 = (0.0, 0.0, 0.0)
+    inertia: tuple[float, float, float, float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint from `parent` to `child`.
+
+    Attributes:
+        type: fixed, revolute, prismatic, spherical (three rotations, about x, then the new y, then the new z) or
+            parallelogram (the child's origin is carried by the parent, its orientation is that of `follows`).
+        xyz, rpy: the child frame in the parent frame at zero [m, rad]; rpy is roll, pitch, yaw about fixed axes. For a
+            parallelogram, rpy is the child's orientation in the frame of `follows`.
+        axis: of a revolute or prismatic joint, in the child frame; any length but zero.
+        range: (lower, upper) [rad or m] of a revolute or prismatic joint; None is unlimited.
+    """
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    xyz: Vec3 = (0.0, 0.0, 0.0)
+    rpy: Vec3 = (0.0, 0.0, 0.0)
+    axis: Vec3 = (1.0, 0.0, 0.0)
+    range: tuple[float, float] | None = None
+    follows: str | None = None
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A dependent joint: its coordinate is ``offset + sum(ratio * coordinate of the named joint)``."""
+
+    joint: str
+    terms: tuple[tuple[str, float], ...]
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop closure: point `p_a` of `body_a` coincides with `p_b` of `body_b` [m]; two axes make it a hinge."""
+
+    body_a: str
+    p_a: Vec3
+    body_b: str
+    p_b: Vec3
+    axis_a: Vec3 | None = None
+    axis_b: Vec3 | None = None
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A payload or counterweight: `mass` [kg] at `position` [m] in the frame of `body`."""
+
+    name: str
+    body: str
+    mass: float
+    position: Vec3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Where approximate balance is judged: `samples` random poses inside the joint ranges."""
+
+    samples: int = 4096
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Bodies, joints and what acts on them. Immutable; equal when all values are equal.
+
+    Raises:
+        InputError: with one `Fault` for every inconsistency (see `validate.faults`).
+    """
+
+    name: str
+    bodies: tuple[Body, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
+    loops: tuple[Loop, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    gravity: Vec3 = (0.0, 0.0, -9.81)
+    workspace: Workspace = Workspace()
+    provenance: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        from .validate import faults
+
+        found = faults(self)
+        if found:
+            raise InputError(found)
+
+    @property
+    def body_names(self) -> tuple[str, ...]:
+        """World first, then the bodies in the file's order."""
+        return (WORLD, *(body.name for body in self.bodies))
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The independent coordinates in the file's order; a spherical joint has three: name.x, name.y, name.z."""
+        dependent = {coupling.joint for coupling in self.couplings}
+        names: list[str] = []
+        for joint in self.joints:
+            if joint.type == "spherical":
+                names += [f"{joint.name}.{letter}" for letter in "xyz"]
+            elif joint.type in SINGLE and joint.name not in dependent:
+                names.append(joint.name)
+        return tuple(names)
+
+    @property
+    def coordinate_units(self) -> tuple[str, ...]:
+        """"rad" or "m" for each coordinate; its torque is in N m or N."""
+        prismatic = {joint.name for joint in self.joints if joint.type == "prismatic"}
+        return tuple("m" if name in prismatic else "rad" for name in self.coordinates)
+
+    def with_springs(self, springs: Iterable[Spring]) -> Mechanism:
+        """A copy with these springs instead of its own."""
+        return replace(self, springs=tuple(springs))
+
+    def with_masses(self, masses: Iterable[PointMass]) -> Mechanism:
+        """A copy with these point masses instead of its own."""
+        return replace(self, masses=tuple(masses))

@@ -1,0 +1,188 @@
+"""The method `convex`: the globally best springs for any tree, then few real springs certified against that bound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from ..errors import InfeasibleError, InputError
+from ..mechanism import Mechanism
+from ..spring import Spring
+from .convex import least_rms
+from .design import Design, FrontRow, Infeasible
+from .gram import Gram, build
+from .minimax import Peak
+from .mounts import Mounts
+from .polish import Springs
+from .problem import Objective, Pair, Problem, Region
+from .search import FEASIBLE, Found, Search
+
+Progress = Callable[[str, float], None]
+MOST = 8  # springs tried when no number is given
+NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
+FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
+REMEDIES = 24  # other pairs tried when exact balance is infeasible
+FEW = 300
+
+
+def design(
+    mechanism: Mechanism,
+    *,
+    span: int = 2,
+    pairs: Iterable[Pair] | None = None,
+    radius: float | None = None,
+    shape: Literal["ball", "box"] = "ball",
+    regions: Mapping[str, Region] | None = None,
+    springs: int | None = None,
+    objective: Objective = "rms",
+    samples: int | None = None,
+    unlimited: bool = False,
+    exact: bool = False,
+    front: bool = False,
+    keep: bool = False,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Design:
+    """Choose springs between bodies of a mechanism (THEORY section 4).
+
+    Args:
+        span, pairs, radius, shape, regions, objective, samples, seed: see `Problem.of`.
+        springs: at most so many; by default the fewest that are exact where that is possible, else that come within
+            1 % of the unbalanced torque of the bound.
+        unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
+        exact: insist on exact balance.
+        front: also list the best design for every number of springs up to `springs` (8 by default).
+        keep: the mechanism's own springs stay and count as a load; else they are replaced.
+        progress: called with what is being done and the share of it that is done.
+
+    Raises:
+        InfeasibleError: `exact`, and no springs on the pairs do it, or none were found.
+        InputError: a bad option.  UnsupportedError: the mechanism has loops.
+    """
+    if springs is not None and springs < 1:
+        raise InputError(f"springs: must be at least 1, found {springs}")
+    bare = mechanism if keep else mechanism.with_springs(())
+    judged = _unlimited(bare) if unlimited else bare
+    problem = Problem.of(
+        judged, span=span, pairs=pairs, radius=radius, shape=shape, regions=regions, objective=objective,
+        samples=samples, seed=seed,
+    )  # fmt: skip
+    gram = build(problem, progress)
+    options = _options(problem, span if pairs is None else None, springs, unlimited)
+    if gram.unbalanced == 0:
+        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, no joint carries a gravity torque")
+    useful = gram.useful
+    if not useful:
+        raise InfeasibleError("no spring on these pairs has any effect on any joint")
+    gram = gram.on(useful)
+    search = Search(gram, seed, progress)
+    bound = search.bound(tuple(range(len(useful))))
+    feasible = bound < FEASIBLE
+    infeasible = None if feasible else _infeasible(gram, bound)
+    if exact and infeasible is not None:
+        raise InfeasibleError(str(infeasible))
+
+    rows = list(search.front(springs or MOST)) if front else []
+    found = rows[-1] if rows else _choose(search, springs, bound)
+    if exact and not found.exact:
+        raise InfeasibleError(
+            f"springs on these pairs can balance exactly, but none were found with {found.count} or fewer: "
+            f"the best leaves {found.value * gram.unbalanced:.3g} N m; allow more springs"
+        )
+    value, floor, unit, set_ = found.value, bound if not feasible else 0.0, gram.unbalanced, found.springs
+    if objective == "peak":
+        peak = Peak.of(gram)
+        floor, unit = (0.0 if feasible else peak.bound().value), peak.unbalanced
+        set_, value = (set_, value) if found.exact else peak.polish(set_)
+    return Design(
+        mechanism=replace(bare, springs=(*bare.springs, *_springs(gram.problem, set_, bare.springs))),
+        method="convex",
+        objective=objective,
+        residual=value * unit,
+        unbalanced=unit,
+        bound=min(floor, value) * unit,  # both hold to rounding or the solver's tolerance; neither may contradict
+        averaged=gram.averaged and objective == "rms",
+        samples=None if gram.averaged and objective == "rms" else problem.samples or mechanism.workspace.samples,
+        free_parameters=options,
+        exact_feasible=feasible,
+        infeasible=infeasible,
+        front=tuple(_row(gram, row) for row in rows),
+    ).with_provenance()
+
+
+def applies(mechanism: Mechanism) -> list[str]:
+    """Why the method does not apply; empty when it does."""
+    return ["it has loops, and the closed-loop solver does not exist yet"] if mechanism.loops else []
+
+
+def _choose(search: Search, springs: int | None, bound: float) -> Found:
+    if springs is not None:
+        candidates = [search.best(count) for count in range(1, springs + 1)]
+        return min(candidates, key=lambda found: (not found.exact, 0 if found.exact else found.value, found.count))
+    for count in range(1, MOST + 1):
+        found = search.best(count)
+        if found.exact or (bound >= FEASIBLE and found.value <= bound + NEAR):
+            break
+    return found
+
+
+def _infeasible(gram: Gram, bound: float) -> Infeasible:
+    problem = gram.problem
+    far = least_rms(gram.enlarged(FAR)).value
+    present = {frozenset(pair) for pair in problem.pairs}
+    mounts = Mounts.of(problem.mechanism)
+    # a large mechanism has hundreds of other pairs: the nearest ones are tried
+    missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
+    missing = sorted(missing, key=mounts.apart)[:REMEDIES]
+    wider = Problem.of(problem.mechanism, pairs=[*problem.pairs, *missing], regions=dict(problem.regions))
+    if not gram.averaged:
+        wider = replace(wider, samples=FEW)  # feasible at so many random poses is feasible at all
+    wide, own = build(wider), list(range(len(problem.pairs)))
+    remedies = [p for i, p in enumerate(missing, len(own)) if least_rms(wide.on([*own, i])).value < FEASIBLE]
+    unit = gram.unbalanced
+    return Infeasible(problem.pairs, bound * unit, far * unit if far >= FEASIBLE else 0.0, tuple(remedies))
+
+
+def _springs(problem: Problem, found: Springs, present: tuple[Spring, ...]) -> list[Spring]:
+    taken = {spring.name for spring in present}
+    names = (name for i in range(1, 10_000) if (name := f"spring {i}") not in taken)
+    springs = []
+    for pair, k, y in zip(found.pair[0], found.k[0], found.y[0], strict=True):
+        body_a, body_b = problem.pairs[pair]
+        z = problem.lift((body_a, body_b)) @ y
+        springs.append(Spring(next(names), body_a, _point(z[:3]), body_b, _point(z[4:]), float(k)))
+    return springs
+
+
+def _point(p: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in p)
+    return x, y, z
+
+
+def _row(gram: Gram, found: Found) -> FrontRow:
+    bound = None if found.bound is None else (found.bound if found.bound >= FEASIBLE else 0.0) * gram.unbalanced
+    pairs = tuple(gram.problem.pairs[i] for i in found.springs.pair[0])
+    return FrontRow(found.count, found.value * gram.unbalanced, bound, pairs, found.exact)
+
+
+def _unlimited(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, joints=tuple(replace(j, range=None) if j.type == "revolute" else j for j in mechanism.joints))
+
+
+def _options(problem: Problem, span: int | None, springs: int | None, unlimited: bool) -> dict[str, Any]:
+    return {
+        **({"span": span} if span is not None else {}),
+        "pairs": [list(pair) for pair in problem.pairs],
+        "regions": {
+            name: {"shape": region.shape, "centre": list(region.centre), "half": list(region.half)}
+            for name, region in problem.regions.items()
+        },
+        "springs": springs,
+        "objective": problem.objective,
+        "samples": problem.samples,
+        "unlimited": unlimited,
+        "seed": problem.seed,
+    }

@@ -1,0 +1,133 @@
+"""A design: the mechanism with its springs, the method that made it, and how far from the best possible it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from .._version import __version__
+from ..balance import Balance, check
+from ..mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class FrontRow:
+    """The best design with at most `springs` springs: what it leaves [N m], and what no such design can undercut."""
+
+    springs: int
+    residual: float
+    bound: float | None
+    pairs: tuple[tuple[str, str], ...]
+    exact: bool
+
+
+@dataclass(frozen=True)
+class Infeasible:
+    """Proof that no springs on `pairs` balance exactly.
+
+    Attributes:
+        least: [N m] torque (of the design's objective) that every choice of springs leaves.
+        far: the same with regions ten times as large, which tells whether the pairs or the regions are to blame.
+        remedies: pairs any one of which, added, would make exact balance possible.
+    """
+
+    pairs: tuple[tuple[str, str], ...]
+    least: float
+    far: float
+    remedies: tuple[tuple[str, str], ...]
+
+    def __str__(self) -> str:
+        pairs = ", ".join(f"{a}:{b}" for a, b in self.pairs)
+        text = f"exact balance is infeasible with springs on {pairs}: every choice leaves at least {self.least:.4g} N m"
+        if self.far > 0:
+            text += f" ({self.far:.4g} N m even with attachments ten times as far out)"
+        if self.remedies:
+            text += "; adding any one of these pairs makes it feasible: "
+            text += ", ".join(f"{a}:{b}" for a, b in self.remedies)
+        return text
+
+
+@dataclass(frozen=True)
+class Design:
+    """The answer of a method.
+
+    Attributes:
+        mechanism: with the springs.
+        objective: what was minimised; residual and unbalanced [N m] are in its terms, and so is
+        bound: [N m] no springs on the allowed pairs and regions can leave less; None for methods without one.
+        averaged: whether these are exact averages over all configurations, or over `samples` random poses.
+        exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.
+    """
+
+    mechanism: Mechanism
+    method: str
+    objective: str
+    residual: float
+    unbalanced: float
+    bound: float | None = None
+    averaged: bool = False
+    samples: int | None = None
+    free_parameters: Mapping[str, Any] = field(default_factory=dict)
+    exact_feasible: bool | None = None
+    infeasible: Infeasible | None = None
+    front: tuple[FrontRow, ...] = ()
+
+    @cached_property
+    def balance(self) -> Balance:
+        """The verdict on the finished mechanism, computed from it alone."""
+        return check(self.mechanism)
+
+    @property
+    def certified_gap(self) -> float | None:
+        """(residual - bound) / unbalanced: how much better any other design could be."""
+        if self.bound is None:
+            return None
+        return max(0.0, self.residual - self.bound) / self.unbalanced if self.unbalanced else 0.0
+
+    def with_provenance(self) -> Design:
+        """The same design whose mechanism says how it was made."""
+        provenance = {
+            "program": f"equipoise {__version__}",
+            "method": self.method,
+            "options": dict(self.free_parameters),
+            "objective": self.objective,
+            "residual": self.residual,
+            "unbalanced": self.unbalanced,
+            "bound": self.bound,
+            "certified_gap": self.certified_gap,
+        }
+        return replace(self, mechanism=replace(self.mechanism, provenance=provenance))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of ``equipoise design --json``."""
+        return {
+            "method": self.method,
+            "certified_gap": self.certified_gap,
+            "bound": self.bound,
+            "objective": self.objective,
+            "residual": self.residual,
+            "unbalanced": self.unbalanced,
+            "averaged": self.averaged,
+            "samples": self.samples,
+            "exact_feasible": self.exact_feasible,
+            "infeasible": None if self.infeasible is None else {
+                "pairs": [list(pair) for pair in self.infeasible.pairs],
+                "least": self.infeasible.least,
+                "far": self.infeasible.far,
+                "remedies": [list(pair) for pair in self.infeasible.remedies],
+            },
+            "front": [
+                {
+                    "springs": row.springs,
+                    "residual": row.residual,
+                    "bound": row.bound,
+                    "pairs": [list(pair) for pair in row.pairs],
+                    "exact": row.exact,
+                }
+                for row in self.front
+            ],
+            "free_parameters": dict(self.free_parameters),
+            "balance": self.balance.to_dict(),
+        }  # fmt: skip

@@ -1,0 +1,118 @@
+"""The peak objective: the largest torque over random poses, bounded and polished by cutting planes.
+
+Only the poses that matter are kept: solve for some, look for the worst among all, add those, repeat. A bound from some
+poses is a bound for all, so stopping early never makes it wrong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..kinematics import Tree, sample
+from ..kinematics.rotation import Array
+from .convex import Bound, least_peak
+from .gram import Gram, svec, torque_rows
+from .polish import Springs, jacobian, residual
+
+FIRST = 600  # rows (pose and coordinate) of the first round
+CUTS = 100  # rows added per round
+ROUNDS = 12
+CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of the chosen ones
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The torques of a problem at random poses, one row per pose and coordinate.
+
+    Every torque is linear in the same few numbers ``w = sum_p <Q_p, N_p>`` as the mean square, so a row is short.
+
+    Attributes:
+        L: (rows, len(w)), load: (rows,): the torque is ``L w + load``, as a share of `unbalanced`.
+        unbalanced: [N m] the largest torque without springs.
+    """
+
+    gram: Gram
+    L: Array
+    load: Array
+    unbalanced: float
+
+    @staticmethod
+    def of(gram: Gram) -> Peak:
+        """The rows over random poses inside the joint ranges."""
+        problem = gram.problem
+        count = problem.samples or problem.mechanism.workspace.samples
+        rows = svec(gram.Q).transpose(1, 0, 2).reshape(len(gram.d), -1)
+        to_w = np.linalg.pinv(rows)
+        L, load = [], []
+        for T, torque, _ in torque_rows(problem, sample(Tree.of(problem.mechanism), count, problem.seed)):
+            L.append((T @ to_w * problem.weights[:, None]).reshape(-1, len(rows)))
+            load.append((torque * problem.weights).ravel())
+        every = np.concatenate(load)
+        unit = float(np.abs(every).max()) or 1.0
+        return Peak(gram, np.concatenate(L) / unit, every / unit, unit)
+
+    def torque(self, springs: Springs) -> Array:
+        """(rows,) torque with a spring set (batch of 1)."""
+        return self.L @ (residual(self.gram, springs)[0] - self.gram.d) + self.load
+
+    def bound(self) -> Bound:
+        """The least peak that any springs on the pairs can leave at these poses."""
+        chosen = np.zeros(len(self.load), bool)
+        chosen[np.random.default_rng(0).permutation(len(self.load))[:FIRST]] = True
+        chosen[np.argsort(-np.abs(self.load))[:CUTS]] = True
+        for _ in range(ROUNDS):
+            best = least_peak(self.gram, self.L[chosen], self.load[chosen])
+            w = np.einsum("prij,pij->r", self.gram.Q, best.N)
+            torque = np.abs(self.L @ w + self.load)
+            if torque.max() <= best.value * (1 + CLOSE) + 1e-9:
+                break
+            chosen[np.argsort(-torque)[:CUTS]] = True
+        return best
+
+    def polish(self, start: Springs) -> tuple[Springs, float]:
+        """Lower the peak of one spring set (batch of 1) under the true constraints: a sequence of linear programs.
+
+        Each program minimises the linearised peak within a trust region; a step that does not lower the true peak
+        shrinks the region.
+        """
+        from scipy.optimize import linprog
+
+        box = np.array([[self.gram.problem.regions[n].shape == "box" for n in pair] for pair in self.gram.problem.pairs])
+        is_box = box[start.pair]
+        now, trust = start, 0.3
+        tau = self.torque(now)
+        value = float(np.abs(tau).max())
+        chosen = np.zeros(len(tau), bool)
+        for _ in range(20 * ROUNDS):
+            if trust < 1e-7:
+                break
+            chosen[np.argsort(-np.abs(tau))[:CUTS]] = True
+            J = self.L[chosen] @ jacobian(self.gram, now)[0]
+            one = np.ones((len(J), 1))
+            lower, upper = np.full(J.shape[1], -trust), np.full(J.shape[1], trust)
+            u = now.u[0].reshape(-1)
+            places = (7 * np.arange(now.k.shape[1])[:, None] + np.arange(1, 7)).ravel()
+            lower[places], upper[places] = np.maximum(-trust, -1 - u), np.minimum(trust, 1 - u)
+            program = linprog(
+                np.append(np.zeros(J.shape[1]), 1.0),
+                np.vstack([np.hstack([J, -one]), np.hstack([-J, -one])]),
+                np.concatenate([-tau[chosen], tau[chosen]]),
+                bounds=[*zip(lower, upper, strict=True), (0, None)],
+            )
+            if program.x is None:
+                break
+            trial = now.moved(program.x[:-1].reshape(1, -1, 7), is_box)
+            tau_trial = self.torque(trial)
+            new = float(np.abs(tau_trial).max())
+            if new < value:
+                trust = min(1.0, trust * 1.5) if value - new > 0.5 * (value - program.x[-1]) else trust
+                stalled = value - new < 1e-7 * value
+                now, tau, value = trial, tau_trial, new
+                if stalled:
+                    break
+            else:
+                chosen[np.argsort(-np.abs(tau_trial))[:CUTS]] = True
+                trust *= 0.4
+        return now, value

@@ -1,0 +1,123 @@
+"""Which bodies springs are mounted on by default, how far apart they are, and how large.
+
+Bodies that fixed joints hold together count as one, and so do the massless, sizeless bodies that stand between the
+axes of a compound joint in many URDF files: nothing can be mounted on those.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..kinematics import Tree
+from ..mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Mounts:
+    """The mountable bodies of a tree.
+
+    Attributes:
+        bodies: names, ground first, one for each rigid group: the body that carries the next moving joint, else the
+            first with mass.
+        distance: (bodies, bodies) moving joints between them, compound joints counted once.
+        size: of each [m]: farthest mass centre or joint from its origin.
+        reach: [m] longest chain of joint offsets.
+    """
+
+    bodies: tuple[str, ...]
+    distance: tuple[tuple[int, ...], ...]
+    size: tuple[float, ...]
+    reach: float
+
+    def pairs(self, span: int) -> tuple[tuple[str, str], ...]:
+        """Every two mountable bodies at most `span` joints apart, nearest to the ground first."""
+        return tuple(
+            (a, b)
+            for i, a in enumerate(self.bodies)
+            for j, b in enumerate(self.bodies)
+            if i < j and self.distance[i][j] <= span
+        )
+
+    def apart(self, pair: tuple[str, str]) -> int:
+        """Joints between two mountable bodies."""
+        return self.distance[self.bodies.index(pair[0])][self.bodies.index(pair[1])]
+
+    def default_radius(self, body: str) -> float:
+        """[m] half the link's size, and at least a tenth of the mechanism's reach."""
+        size = self.size[self.bodies.index(body)] if body in self.bodies else 0.0
+        return max(size / 2, self.reach / 10)
+
+    @staticmethod
+    @lru_cache(maxsize=32)
+    def of(mechanism: Mechanism) -> Mounts:
+        """The mounts of a mechanism.
+
+        Raises:
+            UnsupportedError: it has loops.
+        """
+        tree = Tree.of(mechanism)
+        group, offset = {0: 0}, {0: np.zeros(3)}  # rigid group (named after its root) and place in it of each body
+        members: dict[int, list[int]] = {0: [0]}
+        above: dict[int, int] = {}  # group -> the group its moving joint hangs on
+        ends: dict[int, list[np.ndarray]] = {0: []}  # joints and mass centres in each group, in the root's frame
+        carrier: dict[int, int] = {}  # group -> first body that carries a moving joint
+        turn = {0: np.eye(3)}
+        path = {0: 0.0}
+        for link in tree.links:
+            root = group[link.parent]
+            place = offset[link.parent] + turn[link.parent] @ link.p0
+            path[link.body] = path[link.parent] + float(np.linalg.norm(link.p0))
+            if link.joint.type == "fixed":
+                group[link.body], offset[link.body] = root, place
+                turn[link.body] = turn[link.parent] @ link.R0
+                members[root].append(link.body)
+            else:
+                group[link.body], offset[link.body], turn[link.body] = link.body, np.zeros(3), np.eye(3)
+                members[link.body], ends[link.body], above[link.body] = [link.body], [], root
+                carrier.setdefault(root, link.parent)
+                ends[root].append(place)
+        mass = _masses(tree)
+        for body, points in mass.items():
+            ends[group[body]] += [offset[body] + turn[body] @ p for p in points]
+
+        solid = [root for root in members if root == 0 or any(b in mass for b in members[root]) or _long(ends[root])]
+        chosen = {r: carrier.get(r, next((b for b in members[r] if b in mass), r)) for r in solid}
+        size = [max((float(np.linalg.norm(end - offset[chosen[r]])) for end in ends[r]), default=0.0) for r in solid]
+        distance = tuple(tuple(_apart(a, b, above, set(solid)) for b in solid) for a in solid)
+        reach = max([*path.values(), *(path[chosen[r]] + s for r, s in zip(solid, size, strict=True))])
+        return Mounts(tuple(tree.names[chosen[r]] for r in solid), distance, tuple(size), reach or 1.0)
+
+
+def _masses(tree: Tree) -> dict[int, list[np.ndarray]]:
+    """Body number -> the places of its mass [m], for the bodies that have any."""
+    found: dict[int, list[np.ndarray]] = {}
+    for body in tree.mechanism.bodies:
+        if body.mass > 0:
+            found.setdefault(tree.index[body.name], []).append(np.array(body.com))
+    for point in tree.mechanism.masses:
+        if point.mass > 0 and tree.index[point.body]:
+            found.setdefault(tree.index[point.body], []).append(np.array(point.position))
+    return found
+
+
+def _long(ends: list[np.ndarray]) -> bool:
+    return any(np.linalg.norm(end) > 1e-9 for end in ends)
+
+
+def _apart(a: int, b: int, above: dict[int, int], solid: set[int]) -> int:
+    """Mountable bodies passed on the way from group a to group b."""
+
+    def path(x: int) -> list[int]:
+        steps = [x]
+        while x in above:
+            x = above[x]
+            steps.append(x)
+        return steps
+
+    up, down = path(a), path(b)
+    top = next(x for x in up if x in down)
+    way = [*up[: up.index(top) + 1], *reversed(down[: down.index(top)])]
+    return sum(x in solid for x in way) - 1

@@ -1,0 +1,214 @@
+"""What makes a mechanism consistent. Every fault is found, not only the first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from .errors import Fault, Path, nearest
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+MAX_SAMPLES = 10_000_000
+
+
+def faults(mechanism: Mechanism) -> list[Fault]:
+    """Everything that is wrong with a mechanism, as faults whose paths follow the mechanism file."""
+    return [
+        *_numbers(mechanism),
+        *_names(mechanism),
+        *_references(mechanism),
+        *_joints(mechanism),
+        *_tree(mechanism),
+        *_couplings(mechanism),
+        *_springs(mechanism),
+        *_loops(mechanism),
+    ]
+
+
+def _numbers(m: Mechanism) -> Iterator[Fault]:
+    def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
+        values = (values,) if isinstance(values, (int, float)) else values
+        if not all(isfinite(value) for value in values):
+            yield Fault(path, "must be finite")
+
+    yield from finite(("gravity",), m.gravity)
+    for i, body in enumerate(m.bodies):
+        yield from finite(("bodies", i, "com"), body.com)
+        yield from _at_least(("bodies", i, "mass"), body.mass, 0, "kg")
+        yield from finite(("bodies", i, "inertia"), body.inertia or ())
+    for i, mass in enumerate(m.masses):
+        yield from finite(("masses", i, "position"), mass.position)
+        yield from _at_least(("masses", i, "mass"), mass.mass, 0, "kg")
+    for i, spring in enumerate(m.springs):
+        for end in ("p_a", "p_b"):
+            yield from finite(("springs", i, end), getattr(spring, end))
+        if not (isfinite(spring.stiffness) and spring.stiffness > 0):
+            yield Fault(("springs", i, "stiffness"), f"must be more than 0 N/m, found {spring.stiffness:g}")
+        yield from _at_least(("springs", i, "free_length"), spring.free_length, 0, "m")
+        yield from _at_least(("springs", i, "mass"), spring.mass, 0, "kg")
+        if not 0 <= spring.mass_split <= 1:
+            yield Fault(("springs", i, "mass_split"), f"must be between 0 and 1, found {spring.mass_split:g}")
+    for i, joint in enumerate(m.joints):
+        for name in ("xyz", "rpy", "axis"):
+            yield from finite(("joints", i, name), getattr(joint, name))
+    for i, coupling in enumerate(m.couplings):
+        yield from finite(("couplings", i, "offset"), coupling.offset)
+        for name, ratio in coupling.terms:
+            yield from finite(("couplings", i, "terms", name), ratio)
+    if not 1 <= m.workspace.samples <= MAX_SAMPLES:
+        yield Fault(("workspace", "samples"), f"must be between 1 and {MAX_SAMPLES:,}, found {m.workspace.samples}")
+
+
+def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
+    if not (isfinite(value) and value >= low):
+        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}")
+
+
+def _names(m: Mechanism) -> Iterator[Fault]:
+    for kind, items in (("bodies", m.bodies), ("joints", m.joints), ("springs", m.springs), ("masses", m.masses)):
+        seen: dict[str, int] = {}
+        for i, item in enumerate(items):
+            if not item.name:
+                yield Fault((kind, i, "name"), "must not be empty")
+            elif kind == "bodies" and item.name == "world":
+                yield Fault((kind, i, "name"), "'world' is the fixed frame and cannot be a body")
+            elif item.name in seen:
+                yield Fault((kind, i, "name"), f"duplicate name '{item.name}', first used by {kind}[{seen[item.name]}]")
+            seen.setdefault(item.name, i)
+    # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
+    spherical = {f"{j.name}.{letter}" for j in m.joints if j.type == "spherical" for letter in "xyz"}
+    for i, joint in enumerate(m.joints):
+        if joint.name in spherical:
+            yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
+
+
+def _references(m: Mechanism) -> Iterator[Fault]:
+    bodies = tuple(dict.fromkeys(("world", *(body.name for body in m.bodies))))
+
+    def body(path: Path, name: str | None) -> Iterator[Fault]:
+        if name is not None and name not in bodies:
+            yield Fault(path, f"there is no body {nearest(name, bodies)}", _shorten(bodies))
+
+    for i, joint in enumerate(m.joints):
+        for key in ("parent", "child", "follows"):
+            yield from body(("joints", i, key), getattr(joint, key))
+    for kind, items in (("springs", m.springs), ("loops", m.loops)):
+        for i, item in enumerate(items):
+            for key in ("body_a", "body_b"):
+                yield from body((kind, i, key), getattr(item, key))
+    for i, mass in enumerate(m.masses):
+        yield from body(("masses", i, "body"), mass.body)
+
+
+def _joints(m: Mechanism) -> Iterator[Fault]:
+    types = ("fixed", "revolute", "prismatic", "spherical", "parallelogram")
+    for i, joint in enumerate(m.joints):
+        if joint.type not in types:
+            yield Fault(("joints", i, "type"), f"no joint type {nearest(joint.type, types)}", types)
+            continue
+        if joint.type in ("revolute", "prismatic"):
+            if not any(joint.axis):
+                yield Fault(("joints", i, "axis"), "must not be zero")
+        elif joint.range is not None:
+            yield Fault(("joints", i, "range"), f"a {joint.type} joint has no range; only revolute and prismatic have")
+        if joint.range is not None and not (
+            all(isfinite(limit) for limit in joint.range) and joint.range[0] <= joint.range[1]
+        ):
+            found = ", ".join(f"{limit:g}" for limit in joint.range)
+            yield Fault(("joints", i, "range"), f"must be two finite numbers, lower first, found [{found}]")
+        if joint.type == "parallelogram" and joint.follows is None:
+            yield Fault(("joints", i, "follows"), "missing: a parallelogram joint names the body it keeps parallel to")
+        if joint.type != "parallelogram" and joint.follows is not None:
+            yield Fault(("joints", i, "follows"), f"only a parallelogram joint has it, this one is {joint.type}")
+
+
+def _tree(m: Mechanism) -> Iterator[Fault]:
+    names = {body.name for body in m.bodies}
+    parent_joint: dict[str, int] = {}
+    for i, joint in enumerate(m.joints):
+        if joint.child == "world":
+            yield Fault(("joints", i, "child"), "'world' cannot be a child")
+        elif joint.child in parent_joint:
+            yield Fault(
+                ("joints", i, "child"),
+                f"body '{joint.child}' already hangs on joint '{m.joints[parent_joint[joint.child]].name}'; "
+                "close a loop with an entry in 'loops'",
+            )
+        else:
+            parent_joint[joint.child] = i
+    for i, body in enumerate(m.bodies):
+        if body.name not in parent_joint:
+            yield Fault(("bodies", i, "name"), f"body '{body.name}' is not attached: no joint has it as child")
+    placed = {"world"}
+    waiting = {name: i for name, i in parent_joint.items() if name in names}
+    while waiting:
+        ready = [
+            name
+            for name, i in waiting.items()
+            if m.joints[i].parent in placed and (m.joints[i].follows or "world") in placed
+        ]
+        if not ready:
+            break
+        placed.update(ready)
+        for name in ready:
+            del waiting[name]
+    unknown = {joint.parent for joint in m.joints} | {joint.follows for joint in m.joints if joint.follows}
+    if waiting and unknown <= names | {"world"} and names <= parent_joint.keys():
+        i = min(waiting.values())
+        yield Fault(("joints", i, "parent"), f"joints form a ring that never reaches the world: {_list(waiting)}")
+
+
+def _couplings(m: Mechanism) -> Iterator[Fault]:
+    single = [joint.name for joint in m.joints if joint.type in ("revolute", "prismatic")]
+    dependent: dict[str, int] = {}
+    for i, coupling in enumerate(m.couplings):
+        for path, name in [(("joint",), coupling.joint), *((("terms", name), name) for name, _ in coupling.terms)]:
+            if name not in single:
+                yield Fault(
+                    ("couplings", i, *path), f"no revolute or prismatic joint {nearest(name, single)}", _shorten(single)
+                )
+        if coupling.joint in dependent:
+            yield Fault(("couplings", i, "joint"), f"joint '{coupling.joint}' is already coupled")
+        dependent.setdefault(coupling.joint, i)
+    for name, i in dependent.items():
+        names = [term for term, _ in m.couplings[i].terms]
+        for twice in sorted({term for term in names if names.count(term) > 1}):
+            yield Fault(("couplings", i, "terms", twice), f"joint '{twice}' is named twice")
+        seen, frontier = set(), {name}
+        while frontier:
+            frontier = {t for f in frontier if f in dependent for t, _ in m.couplings[dependent[f]].terms} - seen
+            seen |= frontier
+        if name in seen:
+            yield Fault(("couplings", i, "terms"), f"joint '{name}' depends on itself")
+
+
+def _springs(m: Mechanism) -> Iterator[Fault]:
+    for i, spring in enumerate(m.springs):
+        if spring.body_a == spring.body_b:
+            yield Fault(("springs", i, "body_b"), f"both ends are on '{spring.body_a}': such a spring does nothing")
+
+
+def _loops(m: Mechanism) -> Iterator[Fault]:
+    for i, loop in enumerate(m.loops):
+        axes = {"axis_a": loop.axis_a, "axis_b": loop.axis_b}
+        for name, values in {"p_a": loop.p_a, "p_b": loop.p_b, **axes}.items():
+            if not all(isfinite(value) for value in values or ()):
+                yield Fault(("loops", i, name), "must be finite")
+            elif name in axes and values is not None and not any(values):
+                yield Fault(("loops", i, name), "must not be zero")
+        for name, other in (("axis_a", "axis_b"), ("axis_b", "axis_a")):
+            if axes[name] is None and axes[other] is not None:
+                yield Fault(("loops", i, name), f"missing: a hinge needs both axes, and '{other}' is given")
+        if loop.body_a == loop.body_b:
+            yield Fault(("loops", i, "body_b"), f"both points are on '{loop.body_a}'")
+
+
+def _list(names: Iterable[str]) -> str:
+    return ", ".join(_shorten(list(names)))
+
+
+def _shorten(names: Sequence[str], most: int = 12) -> tuple[str, ...]:
+    return tuple(names) if len(names) <= most else (*names[:most], f"... {len(names) - most} more")

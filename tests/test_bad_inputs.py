@@ -1,0 +1,31 @@
+"""Every broken file in `bad_inputs` gives exactly the message in the .txt beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from equipoise import io
+from equipoise.errors import InputError
+
+FOLDER = Path(__file__).parent / "bad_inputs"
+FILES = sorted(FOLDER.glob("*.yaml"))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_message(path):
+    with pytest.raises(InputError) as caught:
+        io.load(path)
+    message = str(caught.value).replace(f"{FOLDER}/", "")
+    assert message + "\n" == path.with_suffix(".txt").read_text(encoding="utf-8")
+
+
+def test_every_message_has_its_file():
+    assert {path.stem for path in FILES} == {path.stem for path in FOLDER.glob("*.txt")}
+
+
+@pytest.mark.parametrize("name", ["arm.mjcf", "arm.json", "arm"])
+def test_other_suffixes_are_refused_with_the_choices(name):
+    with pytest.raises(InputError, match=r"valid: \.yaml, \.yml, \.urdf, \.xml"):
+        io.load(name)
