@@ -1,9 +1,9 @@
 """equipoise designs the springs that make a robot weightless, and proves it.
 
-    import equipoise as eq
+import equipoise as eq
 
-    design = eq.design(eq.load("ur5.urdf"), span=3)
-    print(design.balance.exact, design.balance.residual.max)
+design = eq.design(eq.load("ur5.urdf"), span=3)
+print(design.balance.exact, design.balance.residual.max)
 """
 
 from __future__ import annotations
@@ -36,7 +36,14 @@ __all__ = [
     "save",
 ]
 
-_LAZY = {"Balance": "balance", "check": "balance", "load": "io", "save": "io", "Design": "synthesis", "design": "synthesis"}
+_LAZY = {
+    "Balance": "balance",
+    "check": "balance",
+    "load": "io",
+    "save": "io",
+    "Design": "synthesis",
+    "design": "synthesis",
+}
 
 
 def __getattr__(name: str) -> Any:

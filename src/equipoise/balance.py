@@ -15,8 +15,8 @@ from .energy.fourier import EXACT, MAX_TERMS, FourierEnergy, NoFourierForm
 from .energy.peak import climb
 from .energy.potential import Potential, State
 from .kinematics import Tree, sample
-from .kinematics.rotation import Array
 from .mechanism import Mechanism
+from .rotation import Array
 
 Range = tuple[float, float]
 
@@ -86,7 +86,9 @@ class Balance:
         shares = [0.0]
         units = np.array(self.mechanism.coordinate_units)
         for unit in ("rad", "m"):
-            residual, unbalanced = (float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced))
+            residual, unbalanced = (
+                float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced)
+            )
             if residual > 0:
                 shares.append(residual / unbalanced if unbalanced > 0 else np.inf)
         return max(shares)

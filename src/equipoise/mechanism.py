@@ -140,7 +140,7 @@ class Mechanism:
 
     @property
     def coordinate_units(self) -> tuple[str, ...]:
-        """"rad" or "m" for each coordinate; its torque is in N m or N."""
+        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
         prismatic = {joint.name for joint in self.joints if joint.type == "prismatic"}
         return tuple("m" if name in prismatic else "rad" for name in self.coordinates)
 

@@ -21,10 +21,10 @@ from math import lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinematics.rotation import Array, harmonics
 from ..kinematics.sampling import bounds
 from ..kinematics.tree import Link, Tree
 from ..mechanism import Mechanism
+from ..rotation import Array, harmonics
 from ..spring import Spring
 from .potential import lumped_masses
 from .series import Series

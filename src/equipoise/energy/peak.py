@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..kinematics.rotation import Array
 from ..kinematics.sampling import inside
 from ..kinematics.tree import Tree
+from ..rotation import Array
 
 ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step

@@ -25,10 +25,10 @@ import numpy as np
 
 from ..errors import EquipoiseWarning, UnsupportedError
 from ..mechanism import WORLD, Body, Joint, Loop, Mechanism, PointMass
+from ..rotation import from_rpy, to_quaternion
 from ..spring import Vec3
 from .lint import impossible, principal
 from .replicas import Replicas, replicas
-from .rotation import from_rpy, to_quaternion
 from .text import Names, numbers
 
 RADIUS = 0.05

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..errors import UnsupportedError
 from ..mechanism import WORLD, Joint, Mechanism
+from ..rotation import from_rpy
 from ..spring import Vec3
-from .rotation import from_rpy
 from .text import Names
 
 

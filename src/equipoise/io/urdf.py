@@ -14,10 +14,10 @@ import numpy as np
 
 from ..errors import EquipoiseWarning, Fault, InputError, Path, nearest
 from ..mechanism import WORLD, Body, Coupling, Joint, JointType, Mechanism
+from ..rotation import from_rpy
 from ..spring import Vec3
 from . import files
 from .lint import inertia_lint
-from .rotation import from_rpy
 from .urdf_write import MOMENTS, to_text, weld
 from .xmltree import Document, Element
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import Fault, InputError
-from .rotation import Array
+from ..rotation import Array
 from .tree import Tree
 
 SLIDE = 1.0  # [m] a prismatic joint without a range is sampled over +-SLIDE

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import UnsupportedError
 from ..mechanism import SINGLE, Joint, Mechanism
-from .rotation import Array, about, from_rpy
+from ..rotation import Array, about, from_rpy
 
 
 @dataclass(frozen=True)

@@ -169,7 +169,9 @@ def _row(gram: Gram, found: Found) -> FrontRow:
 
 
 def _unlimited(mechanism: Mechanism) -> Mechanism:
-    return replace(mechanism, joints=tuple(replace(j, range=None) if j.type == "revolute" else j for j in mechanism.joints))
+    return replace(
+        mechanism, joints=tuple(replace(j, range=None) if j.type == "revolute" else j for j in mechanism.joints)
+    )
 
 
 def _options(problem: Problem, span: int | None, springs: int | None, unlimited: bool) -> dict[str, Any]:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import EquipoiseError
-from ..kinematics.rotation import Array
-from .gram import TRI, TRI_I, TRI_J, TRI_WEIGHT, Gram, smat, svec
+from ..rotation import Array
+from .gram import TRI, TRI_I, TRI_J, Gram, smat, svec
 
 ONE = int(np.flatnonzero((TRI_I == 3) & (TRI_J == 3))[0])  # the entry of svec(N) that is the sum of stiffnesses
 ENDS = ((0, 1, 2), (4, 5, 6))
@@ -100,13 +100,15 @@ def _moments(gram: Gram, extra: int = 1) -> tuple[Rows, Array]:
         block[:, TRI * p : TRI * (p + 1)] = -np.eye(TRI)
         rows.add(block, np.zeros(TRI), clarabel.PSDTriangleConeT(7))
     limits = [
-        (p, entries) for p, pair in enumerate(pairs) for name, end in zip(pair, ENDS, strict=True)
+        (p, entries)
+        for p, pair in enumerate(pairs)
+        for name, end in zip(pair, ENDS, strict=True)
         for entries in ([end] if gram.problem.regions[name].shape == "ball" else [(i,) for i in end])
     ]
     A = np.zeros((len(limits), rows.width))
     for row, (p, entries) in enumerate(limits):
         for i in entries:
-            A[row, TRI * p + int(np.flatnonzero((TRI_I == i) & (TRI_J == i))[0])] = 1.0
+            A[row, TRI * p + int(np.flatnonzero((i == TRI_I) & (i == TRI_J))[0])] = 1.0
         A[row, TRI * p + ONE] = -1.0
     rows.add(A, np.zeros(len(limits)), clarabel.NonnegativeConeT(len(limits)))
     return rows, np.zeros(rows.width)

@@ -17,7 +17,7 @@ from ..energy.fourier import Frames, NoFourierForm, gravity_series, spring_serie
 from ..energy.potential import CHUNK_ENTRIES, Potential
 from ..energy.series import Series
 from ..kinematics import Poses, Tree, Velocities, sample
-from ..kinematics.rotation import Array, skew
+from ..rotation import Array, skew
 from .problem import Pair, Problem
 
 Progress = Callable[[str, float], None]
@@ -91,7 +91,7 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
     averaged = rows is not None
     R, store = rows or _samples(problem, progress)
     U, S, Vt = np.linalg.svd(R[:, :-1], full_matrices=False)
-    rank = int((S > RANK * S[0]).sum()) if len(S) and S[0] > 0 else 0
+    rank = int((RANK * S[0] < S).sum()) if len(S) and S[0] > 0 else 0
     d = (U.T @ R[:, -1])[:rank]
     total = float(np.linalg.norm(R[:, -1]))
     rest = np.linalg.norm(R[:, -1] - U[:, :rank] @ d)

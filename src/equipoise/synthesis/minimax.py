@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..kinematics import Tree, sample
-from ..kinematics.rotation import Array
+from ..rotation import Array
 from .convex import Bound, least_peak
 from .gram import Gram, svec, torque_rows
 from .polish import Springs, jacobian, residual
@@ -79,7 +79,9 @@ class Peak:
         """
         from scipy.optimize import linprog
 
-        box = np.array([[self.gram.problem.regions[n].shape == "box" for n in pair] for pair in self.gram.problem.pairs])
+        box = np.array(
+            [[self.gram.problem.regions[n].shape == "box" for n in pair] for pair in self.gram.problem.pairs]
+        )
         is_box = box[start.pair]
         now, trust = start, 0.3
         tau = self.torque(now)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..kinematics.rotation import Array
+from ..rotation import Array
 from .gram import Gram
 
 ITERATIONS = 150

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
-from ..kinematics.rotation import Array
 from ..mechanism import WORLD, Mechanism
+from ..rotation import Array
 from .mounts import Mounts
 
 Pair = tuple[str, str]

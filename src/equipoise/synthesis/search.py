@@ -103,7 +103,11 @@ class Search:
         last: Found | None = None
         for count in range(1, most + 1):
             found = self.best(count)
-            last = found if last is None or self._better(found, last) else Found(count, last.springs, last.value, found.bound)
+            last = (
+                found
+                if last is None or self._better(found, last)
+                else Found(count, last.springs, last.value, found.bound)
+            )
             yield last
             if last.exact or (floor > FEASIBLE and last.value < 1.001 * floor):
                 return
