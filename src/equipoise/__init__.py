@@ -30,6 +30,7 @@ __all__ = [
     "PointMass",
     "Spring",
     "Workspace",
+    "__version__",
     "check",
     "design",
     "load",
@@ -56,4 +57,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, "__version__"])
+    return sorted(__all__)

@@ -11,12 +11,13 @@ from typing import Any, Literal
 
 import numpy as np
 
+from .arrays import Array
 from .energy.fourier import EXACT, MAX_TERMS, FourierEnergy, NoFourierForm
 from .energy.peak import climb
 from .energy.potential import Potential, State
+from .errors import InputError
 from .kinematics import Tree, sample
 from .mechanism import Mechanism
-from .rotation import Array
 
 Range = tuple[float, float]
 
@@ -142,6 +143,7 @@ class Balance:
         }
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what overflows is an error at the end
 def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, max_terms: int = MAX_TERMS) -> Balance:
     """Judge a mechanism with its springs.
 
@@ -151,6 +153,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
 
     Raises:
         UnsupportedError: the mechanism has loops.
+        InputError: the ranges of coupled joints contradict each other, or its numbers are so large that they overflow.
     """
     tree = Tree.of(mechanism)
     q = sample(tree, samples or mechanism.workspace.samples, seed)
@@ -167,14 +170,19 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     n, m = tree.n, len(mechanism.springs)
     unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
+    unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
+    bound = None if series is None else series.torque_bound()
+    proof = () if series is None or bound is None else (series.amplitude, bound)
+    if not all(np.isfinite(found).all() for found in (best, unbalanced_rms, residual_rms, *proof)):
+        raise InputError(f"mechanism '{mechanism.name}' has numbers so large that its energies overflow")
     ranges = [(-float(minus), float(plus)) for minus, plus in zip(low, top, strict=True)]
     return Balance(
         mechanism=mechanism,
         exact=series is not None and series.exact,
         certificate=_certificate(series, reason, len(q)),
-        unbalanced=Loads(unbalanced, _rms(state.gravity_torque)),
-        residual=Loads(residual, _rms(state.torque)),
-        bound=None if series is None else series.torque_bound(),
+        unbalanced=Loads(unbalanced, unbalanced_rms),
+        residual=Loads(residual, residual_rms),
+        bound=bound,
         constant=float(state.energy.mean()),
         gravity=ranges[0],
         springs=ranges[1],

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import cos, sin
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from .arrays import Array, Complexes
 
 
 def skew(v: ArrayLike) -> Array:
@@ -35,7 +35,7 @@ def about(axis: ArrayLike, angle: ArrayLike) -> Array:
     return A0 + 2 * (np.cos(angle) * A1.real - np.sin(angle) * A1.imag)
 
 
-def harmonics(axis: ArrayLike) -> tuple[Array, NDArray[np.complex128]]:
+def harmonics(axis: ArrayLike) -> tuple[Array, Complexes]:
     """(A0, A1) with ``R(q) = A0 + A1 exp(iq) + conj(A1) exp(-iq)`` for the rotation about a unit `axis` (3,).
 
     This is what makes the energy a finite Fourier series (THEORY section 2).

@@ -19,18 +19,20 @@ from functools import cached_property
 from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, Complexes, Integers
 from ..kinematics.sampling import bounds
 from ..kinematics.tree import Link, Tree
 from ..mechanism import Mechanism
-from ..rotation import Array, harmonics
+from ..rotation import harmonics
 from ..spring import Spring
 from .potential import lumped_masses
 from .series import Series
 
 MAX_TERMS = 200_000
 EXACT = 1e-10  # relative: what counts as zero
+ROUNDING = 1e-13  # relative: what may be nothing but rounding
+MAX_FREQUENCY = 2**31 - 1  # a sum of frequencies has to fit the keys of a `Series`
 MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
 
 
@@ -44,14 +46,11 @@ class Frames:
     def __init__(self, tree: Tree, max_terms: int = MAX_TERMS) -> None:
         self.tree = tree
         self.max_terms = max_terms
-        ratios = [[_fraction(c) for c in row] for row in tree.C[tree.rotates]]
-        self.denominators = np.array([lcm(1, *(r.denominator for r in column)) for column in zip(*ratios, strict=True)])
-        if not ratios:
-            self.denominators = np.ones(tree.n, int)
+        self.denominators = np.array([_denominator(column) for column in tree.C[tree.rotates].T], int)
         self._chains: dict[tuple[int, int], Series] = {}
 
     def stretch(self, body_a: int, body_b: int) -> dict[int, Series]:
-        """Z of THEORY section 1 as ``{X: V_X}``: the stretch is ``sum_X R_WX V_X z`` with z = [p_a; 1; p_b], V 3 x 7."""
+        """Z of THEORY section 1 as ``{X: V_X}``, V_X 3 x 7: the stretch is ``sum_X R_WX V_X z``, z = [p_a; 1; p_b]."""
         to_a = np.hstack([np.eye(3), np.zeros((3, 4))])
         to_b = np.hstack([np.zeros((3, 4)), np.eye(3)])
         unit = np.eye(7)[None, 3]
@@ -134,7 +133,7 @@ class Frames:
             keys = np.zeros((3, 2 * self.tree.n), np.int32)
             keys[1, : self.tree.n] = np.rint(self.tree.C[motion.row] * self.denominators)
             keys[2] = -keys[1]
-            turn = turn @ Series(keys, np.stack([A0 + 0j, A1 * phase, (A1 * phase).conj()]))
+            turn = turn @ Series(keys, np.stack([A0.astype(complex), A1 * phase, (A1 * phase).conj()]))
         return turn
 
     def _chain(self, top: int, body: int) -> Series:
@@ -172,7 +171,8 @@ class FourierEnergy:
     Attributes:
         frequency, degree: (T, n); the constant term is all zero.
         c: (T,) complex [J, or J/m^degree].
-        scale: [J] the size of what has to be balanced: sum of m |g| lever arm (of k a b where there is no gravity).
+        scale: [J] the size of what has to be balanced: what each mass alone, or where gravity does no work each spring
+            alone, makes the energy vary by, summed before anything cancels.
 
     Raises:
         NoFourierForm: a spring has a free length, a coupling ratio is not a fraction, or there are too many terms.
@@ -183,29 +183,40 @@ class FourierEnergy:
         tree = Tree.of(mechanism)
         frames = Frames(tree, max_terms)
         self.tree = tree
+        weights = [frames.linear(-np.array(mechanism.gravity), frames.moment([mass])) for mass in _masses(tree)]
         springs = [spring_series(frames, spring) for spring in mechanism.springs]
-        total = Series.sum([gravity_series(frames), *springs])
+        total = Series.sum([Series.constant(np.zeros((1, 1)), tree.n), *weights, *springs])
         n = tree.n
         self.frequency = total.keys[:, :n] / frames.denominators
         self.degree = total.keys[:, n:]
         self.c = total.coef[:, 0, 0]
-        self.scale = _gravity_scale(frames) or sum(float(np.abs(s.coef[s.keys.any(axis=1)]).sum()) for s in springs)
+        self.scale = self._scale(weights, _lever_arms(frames)) or self._scale(springs, 0.0) or _lever_arms(frames)
 
     @cached_property
     def reach(self) -> Array:
-        """(n,) the largest value of a sliding coordinate [m], +-1 m when it has no range; 1 for an angle."""
-        lower, upper = bounds(self.tree)
-        return np.where(self.tree.turns, 1.0, np.maximum(np.abs(lower), np.abs(upper)))
+        """(n,) the largest value of each coordinate [m or rad] where it slides something; see `bounds`."""
+        reach = np.abs(bounds(self.tree)).max(axis=0)
+        return np.where(reach > 0, reach, 1.0)  # a slide locked at zero still carries its load
 
     @property
-    def varies(self) -> NDArray[np.bool_]:
+    def varies(self) -> Booleans:
         """(T,) false for the constant term only."""
-        return self.frequency.any(axis=1) | self.degree.any(axis=1)
+        return np.asarray(self.frequency.any(axis=1) | self.degree.any(axis=1))
 
     @cached_property
     def amplitude(self) -> Array:
         """(T,) the largest value of each term over the range [J], 0 for the constant."""
         return np.where(self.varies, np.abs(self.c) * np.prod(self.reach**self.degree, axis=1), 0.0)
+
+    def _scale(self, parts: list[Series], whole: float) -> float:
+        """How much the parts vary, each on its own [J]; 0 where it is only rounding of the `whole` they belong to."""
+        varying = 0.0
+        for part in parts:
+            size = np.abs(part.coef[:, 0, 0]) * np.prod(self.reach ** part.keys[:, self.tree.n :], axis=1)
+            varies = part.keys.any(axis=1)
+            varying += float(size[varies].sum())
+            whole += float(size[~varies].sum())
+        return varying if varying > ROUNDING * whole else 0.0
 
     @property
     def constant(self) -> float:
@@ -215,7 +226,7 @@ class FourierEnergy:
     @property
     def exact(self) -> bool:
         """Whether the energy is constant: no term but the constant one above 1e-10 of `scale`, all taken together."""
-        return bool(self.amplitude.sum() <= EXACT * self.scale)
+        return bool(np.isfinite(self.scale) and self.amplitude.sum() <= EXACT * self.scale)
 
     def torque_bound(self) -> Array:
         """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (slides within `reach`)."""
@@ -235,11 +246,11 @@ class FourierEnergy:
             torque[:, j] += (self._terms(q, degree) @ factor).real
         return torque
 
-    def _terms(self, q: Array, degree: NDArray[np.int32]) -> NDArray[np.complex128]:
+    def _terms(self, q: Array, degree: Integers) -> Complexes:
         powers = np.prod(q[:, None] ** degree, axis=2)
         return self.c * powers * np.exp(1j * (q @ self.frequency.T))
 
-    def _slides(self) -> Iterator[tuple[int, NDArray[np.int32], NDArray[np.int32]]]:
+    def _slides(self) -> Iterator[tuple[int, Integers, Integers]]:
         """For each sliding coordinate j: the factor (T,) and the degrees that d/dq_j leaves of the powers."""
         for j in np.flatnonzero(self.degree.any(axis=0)):
             degree = self.degree.copy()
@@ -271,8 +282,8 @@ def _masses(tree: Tree) -> list[tuple[int, float, Array]]:
     return [(tree.index[body], mass, p) for body, mass, p in lumped_masses(tree.mechanism) if mass]
 
 
-def _gravity_scale(frames: Frames) -> float:
-    """[J] sum of m |g| lever arm over all masses, before anything cancels."""
+def _lever_arms(frames: Frames) -> float:
+    """[J] sum of m |g| lever arm over all masses, in whatever direction: what the rounding of gravity is a share of."""
     arms = (
         float(np.abs(v.coef).sum(axis=0).max())
         for mass in _masses(frames.tree)
@@ -288,7 +299,18 @@ def _nonzero(parts: dict[int, list[Series]]) -> dict[int, Series]:
     return {X: series for X, series in summed.items() if np.abs(series.coef).max() > 0}
 
 
+def _denominator(ratios: Array) -> int:
+    """The common denominator of a coordinate's ratios in all rotations."""
+    fractions = [_fraction(ratio) for ratio in ratios]
+    common = lcm(1, *(fraction.denominator for fraction in fractions))
+    if sum(abs(fraction) for fraction in fractions) * common > MAX_FREQUENCY:
+        raise NoFourierForm("its coupling ratios have no common denominator of a reasonable size")
+    return common
+
+
 def _fraction(ratio: float) -> Fraction:
+    if not np.isfinite(ratio):
+        raise NoFourierForm("the product of its coupling ratios overflows")
     fraction = Fraction(float(ratio)).limit_denominator(MAX_DENOMINATOR)
     if abs(float(fraction) - ratio) > 1e-15 * max(1.0, abs(ratio)):
         raise NoFourierForm(f"a coupling ratio ({ratio:g}) is not a fraction with a denominator below 1000")

@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..kinematics.sampling import inside
+from ..arrays import Array
+from ..kinematics.sampling import bounds, inside, slowest
 from ..kinematics.tree import Tree
-from ..rotation import Array
 
 ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step
@@ -34,13 +34,13 @@ def climb(tree: Tree, values: Callable[[Array], Array], q: Array, seed: int = 0)
     best_q, best = q[np.argmax(start, axis=0)], start.max(axis=0)
     if tree.n == 0 or m == 0:
         return best, best_q
-    rows = tree.coordinate_rows
-    width = np.clip(tree.upper[rows] - tree.lower[rows], 0.0, 2.0)
+    lower, upper = bounds(tree)
+    width = np.minimum(upper - lower, 2.0 / slowest(tree))
     tries = max(4, BUDGET // (ROUNDS * m))
     for i in range(ROUNDS):
         step = 0.25 * SHRINK**i * width * rng.normal(size=(m, tries, tree.n))
         step *= rng.random(step.shape) < max(0.5, 1 / tree.n)  # moving fewer coordinates at a time climbs ridges better
-        trial = np.clip(best_q[:, None] + step, tree.lower[rows], tree.upper[rows]).reshape(-1, tree.n)
+        trial = np.clip(best_q[:, None] + step, lower, upper).reshape(-1, tree.n)
         found = np.where(inside(tree, trial)[:, None], values(trial), -np.inf).reshape(m, tries, m)
         own = np.diagonal(found, axis1=0, axis2=2).T  # (m, tries): of each trial only the quantity it climbs
         winner = own.argmax(axis=1)

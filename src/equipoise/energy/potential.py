@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..kinematics.tree import Tree
 from ..mechanism import Mechanism
-from ..rotation import Array
 
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 

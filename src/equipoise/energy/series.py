@@ -10,17 +10,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Keys = NDArray[np.int32]
+from ..arrays import Complexes, Integers
 
 
 @dataclass(frozen=True)
 class Series:
     """Terms `keys` (T, 2n), frequencies first, then degrees; `coef` (T, ...) complex. A term may occur twice."""
 
-    keys: Keys
-    coef: NDArray[np.complex128]
+    keys: Integers
+    coef: Complexes
 
     @staticmethod
     def constant(value: ArrayLike, n: int) -> Series:

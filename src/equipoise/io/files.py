@@ -58,6 +58,21 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         raise _fault(name, f"cannot be written: {_reason(error)}") from error
 
 
+def check_writable(path: str | os.PathLike[str]) -> None:
+    """Whether `write_text` could write there, asked before long work.
+
+    Raises:
+        InputError: the folder is missing or cannot be written to, or the path is a folder.
+    """
+    target = Path(os.path.realpath(os.fspath(path)))
+    if target.is_dir():
+        raise _fault(os.fspath(path), "cannot be written: it is a folder")
+    if not target.parent.is_dir():
+        raise _fault(os.fspath(path), "cannot be written: no such file or folder")
+    if not os.access(target if target.exists() else target.parent, os.W_OK):
+        raise _fault(os.fspath(path), "cannot be written: permission denied")
+
+
 def _replace(target: Path, text: str) -> None:
     mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
     handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".tmp", dir=target.parent)

@@ -3,27 +3,52 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import Fault, InputError
-from ..rotation import Array
 from .tree import Tree
 
 SLIDE = 1.0  # [m] a prismatic joint without a range is sampled over +-SLIDE
+NOTHING = 1e-9  # a smaller coupling ratio turns nothing
 TRIES = 200  # rounds of rejection sampling before the ranges are called contradictory
 
 
+def slowest(tree: Tree) -> Array:
+    """(n,) the least ratio at which each angle turns any joint, at most 1: how far a gear reduces. 1 for a slide."""
+    ratios = np.abs(tree.C[tree.rotates])
+    ratios = np.where(ratios > NOTHING, ratios, np.inf)
+    return np.where(tree.turns, ratios.min(axis=0, initial=1.0), 1.0)
+
+
 def bounds(tree: Tree) -> tuple[Array, Array]:
-    """Box (n,), (n,) that configurations are drawn from: the range, +-pi for an unlimited angle, +-1 m for a slide."""
+    """Box (n,), (n,) that configurations are drawn from: the range; +-1 m for a slide without one.
+
+    An angle without a range gets +-pi, or what turns the slowest joint that it drives by +-pi.
+    """
     rows = tree.coordinate_rows
-    free = np.where(tree.turns, np.pi, SLIDE)
+    free = np.where(tree.turns, np.pi / slowest(tree), SLIDE)
     lower, upper = tree.lower[rows], tree.upper[rows]
     return np.where(np.isinf(lower), -free, lower), np.where(np.isinf(upper), free, upper)
 
 
-def inside(tree: Tree, q: Array, slack: float = 1e-12) -> Array:
+def whole_turns(tree: Tree) -> bool:
+    """Whether every coordinate is an angle over whole turns and no dependent joint is limited.
+
+    Then averages over the ranges are averages over all configurations.
+    """
+    lower, upper = bounds(tree)
+    turns = (upper - lower) / (2 * np.pi)
+    whole = (np.rint(turns) > 0) & (np.abs(turns - np.rint(turns)) < 1e-6)
+    dependent = np.setdiff1d(np.arange(len(tree.lower)), tree.coordinate_rows)
+    limited = np.isfinite(tree.lower[dependent]) | np.isfinite(tree.upper[dependent])
+    return bool(tree.turns.all() and whole.all() and not limited.any())
+
+
+def inside(tree: Tree, q: Array, slack: float = 1e-12) -> NDArray[np.bool_]:
     """(N,) whether every joint, dependent ones included, is inside its range at `q` (N, n)."""
     s = q @ tree.C.T + tree.s0
-    return ((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1)
+    return np.asarray(((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1))
 
 
 def sample(tree: Tree, count: int, seed: int = 0) -> Array:

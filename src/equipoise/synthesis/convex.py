@@ -1,138 +1,189 @@
-"""The globally best springs as a convex program (THEORY sections 1 and 4).
-
-Unknowns are the moment matrices N_p >= 0 of the body pairs, 7 x 7 in the regions' own coordinates. Attachments inside
-the regions give linear constraints on N_p (a spring's N is k y y' with y = [u_a; 1; u_b]; summed over springs, the mean
-of |u|^2 stays within the ball, or of u_i^2 within the box). Any set of springs, however many, is a feasible point, so the
-optimum is a lower bound for every design on these pairs and regions.
-"""
+"""The method `convex`: the globally best springs for any tree, then few real springs certified against that bound."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import EquipoiseError
-from ..rotation import Array
-from .gram import TRI, TRI_I, TRI_J, Gram, smat, svec
+from ..errors import InfeasibleError, InputError
+from ..mechanism import Mechanism
+from ..spring import Spring
+from .bound import least_rms
+from .design import Design, FrontRow, Infeasible
+from .gram import Gram, build
+from .minimax import Peak
+from .mounts import Mounts
+from .polish import Springs
+from .problem import Objective, Pair, Problem, Region
+from .search import FEASIBLE, Found, Search
 
-ONE = int(np.flatnonzero((TRI_I == 3) & (TRI_J == 3))[0])  # the entry of svec(N) that is the sum of stiffnesses
-ENDS = ((0, 1, 2), (4, 5, 6))
-
-
-@dataclass(frozen=True)
-class Bound:
-    """The least torque that any springs on the pairs can leave.
-
-    Attributes:
-        value: as a share of the unbalanced torque (rms or peak): the dual bound, valid up to the solver's tolerance.
-        N: (pairs, 7, 7) moment matrices that (nearly) reach it.
-        iterations, seconds: of the interior-point solve.
-    """
-
-    value: float
-    N: Array
-    iterations: int
-    seconds: float
+Progress = Callable[[str, float], None]
+MOST = 8  # springs tried when no number is given
+NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
+FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
+REMEDIES = 24  # other pairs tried when exact balance is infeasible
+FEW = 300
 
 
-class Rows:
-    """Linear constraints ``s = b - A x`` in the solver's form, block by block, with a cone for each."""
-
-    def __init__(self, width: int) -> None:
-        self.width = width
-        self.A: list[Array] = []
-        self.b: list[Array] = []
-        self.cones: list[object] = []
-
-    def add(self, A: Array, b: Array, cone: object) -> None:
-        """Append rows with ``b - A x`` in `cone`."""
-        self.A.append(A)
-        self.b.append(b)
-        self.cones.append(cone)
-
-
-def least_rms(gram: Gram) -> Bound:
-    """The bound for the root mean square torque of all joints together (rest included)."""
-    import clarabel
-
-    R, scale = _scaled(gram)
-    rows, objective = _moments(gram)
-    t = rows.width - 1
-    A = np.zeros((len(gram.d) + 2, rows.width))
-    A[0, t], A[1:-1, :t] = -1.0, -R
-    rows.add(A, np.concatenate([[0.0], gram.d, [gram.rest]]), clarabel.SecondOrderConeT(len(A)))
-    objective[t] = 1.0
-    return _solve(rows, objective, scale)
-
-
-def least_peak(gram: Gram, L: Array, load: Array) -> Bound:
-    """The bound for the largest of the torques ``|L w + load|`` with ``w = sum_p <Q_p, N_p>``.
+def design(
+    mechanism: Mechanism,
+    *,
+    span: int = 2,
+    pairs: Iterable[Pair] | None = None,
+    radius: float | None = None,
+    shape: Literal["ball", "box"] = "ball",
+    regions: Mapping[str, Region] | None = None,
+    springs: int | None = None,
+    objective: Objective = "rms",
+    samples: int | None = None,
+    unlimited: bool = False,
+    exact: bool = False,
+    front: bool = False,
+    keep: bool = False,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Design:
+    """Choose springs between bodies of a mechanism (THEORY section 4).
 
     Args:
-        L: (rows, len(w)), load: (rows,), as shares of any unit: see `minimax.Peak`.
+        span, pairs, radius, shape, regions, objective, samples, seed: see `Problem.of`.
+        springs: at most so many; by default the fewest that are exact where that is possible, else that come within
+            1 % of the unbalanced torque of the bound.
+        unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
+        exact: insist on exact balance.
+        front: also list the best design for every number of springs up to `springs` (8 by default).
+        keep: the mechanism's own springs stay and count as a load; else they are replaced.
+        progress: called with what is being done and the share of it that is done.
+
+    Raises:
+        InfeasibleError: `exact`, and no springs on the pairs do it, or none were found.
+        InputError: a bad option.  UnsupportedError: the mechanism has loops.
     """
-    import clarabel
+    if springs is not None and springs < 1:
+        raise InputError(f"springs: must be at least 1, found {springs}")
+    bare = mechanism if keep else mechanism.with_springs(())
+    judged = _unlimited(bare) if unlimited else bare
+    problem = Problem.of(
+        judged, span=span, pairs=pairs, radius=radius, shape=shape, regions=regions, objective=objective,
+        samples=samples, seed=seed,
+    )  # fmt: skip
+    gram = build(problem, progress)
+    options = _options(problem, span if pairs is None else None, springs, unlimited)
+    if gram.unbalanced == 0:
+        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, no joint carries a gravity torque")
+    useful = gram.useful
+    if not useful:
+        raise InfeasibleError("no spring on these pairs has any effect on any joint")
+    gram = gram.on(useful)
+    search = Search(gram, seed, progress)
+    bound = search.bound(tuple(range(len(useful))))
+    feasible = bound < FEASIBLE
+    infeasible = None if feasible else _infeasible(gram, bound)
+    if exact and infeasible is not None:
+        raise InfeasibleError(str(infeasible))
 
-    r = L.shape[1]
-    R, scale = _scaled(gram)
-    rows, objective = _moments(gram, extra=r + 1)  # w, and the peak t
-    v, t = rows.width - r - 1, rows.width - 1
-    tie = np.zeros((r, rows.width))
-    tie[:, :v], tie[:, v:t] = R, -np.eye(r)
-    rows.add(tie, np.zeros(r), clarabel.ZeroConeT(r))
-    for sign in (1.0, -1.0):
-        A = np.zeros((len(load), rows.width))
-        A[:, v:t], A[:, t] = sign * L, -1.0
-        rows.add(A, -sign * load, clarabel.NonnegativeConeT(len(load)))
-    objective[t] = 1.0
-    return _solve(rows, objective, scale)
+    rows = list(search.front(springs or MOST)) if front else []
+    found = rows[-1] if rows else _choose(search, springs, bound)
+    if exact and not found.exact:
+        raise InfeasibleError(
+            f"springs on these pairs can balance exactly, but none were found with {found.count} or fewer: "
+            f"the best leaves {found.value * gram.unbalanced:.3g} N m; allow more springs"
+        )
+    value, floor, unit, set_ = found.value, bound if not feasible else 0.0, gram.unbalanced, found.springs
+    if objective == "peak":
+        peak = Peak.of(gram)
+        floor, unit = (0.0 if feasible else peak.bound().value), peak.unbalanced
+        set_, value = (set_, value) if found.exact else peak.polish(set_)
+    return Design(
+        mechanism=replace(bare, springs=(*bare.springs, *_springs(gram.problem, set_, bare.springs))),
+        method="convex",
+        objective=objective,
+        residual=value * unit,
+        unbalanced=unit,
+        bound=min(floor, value) * unit,  # both hold to rounding or the solver's tolerance; neither may contradict
+        averaged=gram.averaged and objective == "rms",
+        samples=None if gram.averaged and objective == "rms" else problem.samples or mechanism.workspace.samples,
+        free_parameters=options,
+        exact_feasible=feasible,
+        infeasible=infeasible,
+        front=tuple(_row(gram, row) for row in rows),
+    ).with_provenance()
 
 
-def _moments(gram: Gram, extra: int = 1) -> tuple[Rows, Array]:
-    """Every N_p positive semidefinite and its attachments in their regions; `extra` more unknowns at the end."""
-    import clarabel
-
-    pairs = gram.problem.pairs
-    rows = Rows(TRI * len(pairs) + extra)
-    for p in range(len(pairs)):
-        block = np.zeros((TRI, rows.width))
-        block[:, TRI * p : TRI * (p + 1)] = -np.eye(TRI)
-        rows.add(block, np.zeros(TRI), clarabel.PSDTriangleConeT(7))
-    limits = [
-        (p, entries)
-        for p, pair in enumerate(pairs)
-        for name, end in zip(pair, ENDS, strict=True)
-        for entries in ([end] if gram.problem.regions[name].shape == "ball" else [(i,) for i in end])
-    ]
-    A = np.zeros((len(limits), rows.width))
-    for row, (p, entries) in enumerate(limits):
-        for i in entries:
-            A[row, TRI * p + int(np.flatnonzero((i == TRI_I) & (i == TRI_J))[0])] = 1.0
-        A[row, TRI * p + ONE] = -1.0
-    rows.add(A, np.zeros(len(limits)), clarabel.NonnegativeConeT(len(limits)))
-    return rows, np.zeros(rows.width)
+def applies(mechanism: Mechanism) -> list[str]:
+    """Why the method does not apply; empty when it does."""
+    return ["it has loops, and the closed-loop solver does not exist yet"] if mechanism.loops else []
 
 
-def _scaled(gram: Gram) -> tuple[Array, Array]:
-    """The map (len(w), 28 pairs) from entries of svec(N) to w, each pair in a unit (pairs,) that makes it of size one."""
-    R = svec(gram.Q)
-    scale = 1 / np.maximum(np.linalg.norm(R, axis=(1, 2)), 1e-300)
-    return (R * scale[:, None, None]).transpose(1, 0, 2).reshape(len(gram.d), -1), scale
+def _choose(search: Search, springs: int | None, bound: float) -> Found:
+    if springs is not None:
+        candidates = [search.best(count) for count in range(1, springs + 1)]
+        return min(candidates, key=lambda found: (not found.exact, 0 if found.exact else found.value, found.count))
+    found = search.best(1)
+    while found.count < MOST and not found.exact and (bound < FEASIBLE or found.value > bound + NEAR):
+        found = search.best(found.count + 1)
+    return found
 
 
-def _solve(rows: Rows, objective: Array, scale: Array) -> Bound:
-    import clarabel
-    from scipy import sparse
+def _infeasible(gram: Gram, bound: float) -> Infeasible:
+    problem = gram.problem
+    far = least_rms(gram.enlarged(FAR)).value
+    present = {frozenset(pair) for pair in problem.pairs}
+    mounts = Mounts.of(problem.mechanism)
+    # a large mechanism has hundreds of other pairs: the nearest ones are tried
+    missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
+    missing = sorted(missing, key=mounts.apart)[:REMEDIES]
+    wider = Problem.of(problem.mechanism, pairs=[*problem.pairs, *missing], regions=dict(problem.regions))
+    if not gram.averaged:
+        wider = replace(wider, samples=FEW)  # feasible at so many random poses is feasible at all
+    wide, own = build(wider), list(range(len(problem.pairs)))
+    remedies = [p for i, p in enumerate(missing, len(own)) if least_rms(wide.on([*own, i])).value < FEASIBLE]
+    unit = gram.unbalanced
+    return Infeasible(problem.pairs, bound * unit, far * unit if far >= FEASIBLE else 0.0, tuple(remedies))
 
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
-    n = len(objective)
-    A, b = sparse.csc_matrix(np.vstack(rows.A)), np.concatenate(rows.b)
-    solution = clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, rows.cones, settings).solve()
-    if str(solution.status) not in ("Solved", "AlmostSolved", "InsufficientProgress"):
-        raise EquipoiseError(f"the convex solver stopped with '{solution.status}'")
-    N = smat(np.array(solution.x)[: TRI * len(scale)].reshape(-1, TRI)) * scale[:, None, None]
-    return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual)), N, solution.iterations, solution.solve_time)
+
+def _springs(problem: Problem, found: Springs, present: tuple[Spring, ...]) -> list[Spring]:
+    taken = {spring.name for spring in present}
+    names = (name for i in range(1, 10_000) if (name := f"spring {i}") not in taken)
+    springs = []
+    for pair, k, y in zip(found.pair[0], found.k[0], found.y[0], strict=True):
+        body_a, body_b = problem.pairs[pair]
+        z = problem.lift((body_a, body_b)) @ y
+        springs.append(Spring(next(names), body_a, _point(z[:3]), body_b, _point(z[4:]), float(k)))
+    return springs
+
+
+def _point(p: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in p)
+    return x, y, z
+
+
+def _row(gram: Gram, found: Found) -> FrontRow:
+    bound = None if found.bound is None else (found.bound if found.bound >= FEASIBLE else 0.0) * gram.unbalanced
+    pairs = tuple(gram.problem.pairs[i] for i in found.springs.pair[0])
+    return FrontRow(found.count, found.value * gram.unbalanced, bound, pairs, found.exact)
+
+
+def _unlimited(mechanism: Mechanism) -> Mechanism:
+    return replace(
+        mechanism, joints=tuple(replace(j, range=None) if j.type == "revolute" else j for j in mechanism.joints)
+    )
+
+
+def _options(problem: Problem, span: int | None, springs: int | None, unlimited: bool) -> dict[str, Any]:
+    return {
+        **({"span": span} if span is not None else {}),
+        "pairs": [list(pair) for pair in problem.pairs],
+        "regions": {
+            name: {"shape": region.shape, "centre": list(region.centre), "half": list(region.half)}
+            for name, region in problem.regions.items()
+        },
+        "springs": springs,
+        "objective": problem.objective,
+        "samples": problem.samples,
+        "unlimited": unlimited,
+        "seed": problem.seed,
+    }

@@ -10,14 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, Complexes
 from ..energy.fourier import Frames, NoFourierForm, gravity_series, spring_series
 from ..energy.potential import CHUNK_ENTRIES, Potential
 from ..energy.series import Series
 from ..kinematics import Poses, Tree, Velocities, sample
-from ..rotation import Array, skew
+from ..kinematics.sampling import whole_turns
+from ..rotation import skew
 from .problem import Pair, Problem
 
 Progress = Callable[[str, float], None]
@@ -29,8 +33,8 @@ TRI_WEIGHT = np.where(TRI_I == TRI_J, 1.0, np.sqrt(2.0))
 TRI = len(TRI_I)  # 28
 
 
-def svec(M: Array) -> Array:
-    """Symmetric (..., 7, 7) -> (..., 28) with ``svec(A) . svec(B) == trace(A B)``."""
+def svec(M: NDArray[Any]) -> NDArray[Any]:
+    """Symmetric (..., 7, 7), real or complex, -> (..., 28) with ``svec(A) . svec(B) == trace(A B)``."""
     return M[..., TRI_I, TRI_J] * TRI_WEIGHT
 
 
@@ -65,6 +69,12 @@ class Gram:
         """The same problem restricted to some of its pairs (by number)."""
         pairs = tuple(self.problem.pairs[i] for i in chosen)
         return replace(self, problem=self.problem.on(pairs), Q=self.Q[chosen], store=self.store[chosen])
+
+    @property
+    def box(self) -> Booleans:
+        """(pairs, 2) whether the region at each end is a box; else it is a ball."""
+        regions = self.problem.regions
+        return np.array([[regions[name].shape == "box" for name in pair] for pair in self.problem.pairs])
 
     def enlarged(self, factor: float) -> Gram:
         """The same problem with every region `factor` times as large about its centre."""
@@ -104,12 +114,7 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
     """By Parseval: the mean square of a Fourier series' derivative is the sum of |k_j c_k|^2."""
     mechanism = problem.mechanism
     tree = Tree.of(mechanism)
-    rows = tree.coordinate_rows
-    turns = (tree.upper[rows] - tree.lower[rows]) / (2 * np.pi)
-    whole = np.isinf(turns) | (np.abs(turns - np.rint(turns)) < 1e-6) & (np.rint(turns) > 0)
-    coupled = np.setdiff1d(np.arange(len(tree.lower)), rows)
-    limited = np.isfinite(tree.lower[coupled]) | np.isfinite(tree.upper[coupled])
-    if not tree.turns.all() or not whole.all() or limited.any():
+    if not whole_turns(tree):
         return None
     try:
         frames = Frames(tree)
@@ -119,7 +124,7 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
         return None
     keys, inverse = np.unique(np.concatenate([s.keys for s in (load, *forms)]), axis=0, return_inverse=True)
     inverse = inverse.ravel()
-    A = np.zeros((len(keys), TRI * len(forms) + 1), complex)
+    A: Complexes = np.zeros((len(keys), TRI * len(forms) + 1), complex)
     A[inverse[: len(load)], -1] = load.coef[:, 0, 0]
     at = len(load)
     for p, form in enumerate(forms):
@@ -127,9 +132,9 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
         at += len(form)
     k = keys[:, : tree.n] / frames.denominators
     constant = ~keys.any(axis=1)
-    store = smat(A[constant, :-1].real.reshape(-1, len(forms), TRI).sum(axis=0))
+    store = smat(A.real[constant, :-1].reshape(-1, len(forms), TRI).sum(axis=0))
     A *= np.linalg.norm(k, axis=1)[:, None]
-    return np.linalg.qr(np.vstack([A.real, A.imag]), mode="r"), store
+    return _triangle(np.vstack([A.real, A.imag])), store
 
 
 def _form(frames: Frames, problem: Problem, pair: Pair) -> Series:
@@ -145,12 +150,17 @@ def _samples(problem: Problem, progress: Progress | None) -> tuple[Array, Array]
     R, store, done = np.zeros((0, width)), np.zeros((len(problem.pairs), 7, 7)), 0
     for torque, load, energy in torque_rows(problem, sample(Tree.of(problem.mechanism), count, problem.seed)):
         rows = np.concatenate([torque, load[..., None]], axis=-1) * problem.weights[:, None] / np.sqrt(count)
-        R = np.linalg.qr(np.vstack([R, rows.reshape(-1, width)]), mode="r")
+        R = _triangle(np.vstack([R, rows.reshape(-1, width)]))
         store += energy / count
         done += len(torque)
         if progress:
             progress("reducing samples", done / count)
     return R, store
+
+
+def _triangle(rows: Array) -> Array:
+    """The triangular factor: the same Gram matrix in as few rows as there are columns."""
+    return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
 def torque_rows(problem: Problem, q: Array) -> Iterator[tuple[Array, Array, Array]]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import any_mechanism
+from . import convex
 from .design import Design
 
 
@@ -36,8 +36,8 @@ METHODS: dict[str, Method] = {
             "convex",
             "globally best zero-free-length springs between any bodies of a tree, exact where feasible",
             "THEORY section 4: semidefinite program over moment matrices, then local polish",
-            any_mechanism.applies,
-            any_mechanism.design,
+            convex.applies,
+            convex.design,
             {
                 "span": "springs join bodies at most this many moving joints apart (default 2)",
                 "radius": "[m] of every attachment region (default: from each link's size)",

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..kinematics import Tree, sample
-from ..rotation import Array
-from .convex import Bound, least_peak
+from .bound import Bound, least_peak
 from .gram import Gram, svec, torque_rows
 from .polish import Springs, jacobian, residual
 
@@ -62,13 +62,14 @@ class Peak:
         chosen = np.zeros(len(self.load), bool)
         chosen[np.random.default_rng(0).permutation(len(self.load))[:FIRST]] = True
         chosen[np.argsort(-np.abs(self.load))[:CUTS]] = True
+        best = least_peak(self.gram, self.L[chosen], self.load[chosen])
         for _ in range(ROUNDS):
-            best = least_peak(self.gram, self.L[chosen], self.load[chosen])
             w = np.einsum("prij,pij->r", self.gram.Q, best.N)
             torque = np.abs(self.L @ w + self.load)
             if torque.max() <= best.value * (1 + CLOSE) + 1e-9:
                 break
             chosen[np.argsort(-torque)[:CUTS]] = True
+            best = least_peak(self.gram, self.L[chosen], self.load[chosen])
         return best
 
     def polish(self, start: Springs) -> tuple[Springs, float]:
@@ -79,10 +80,7 @@ class Peak:
         """
         from scipy.optimize import linprog
 
-        box = np.array(
-            [[self.gram.problem.regions[n].shape == "box" for n in pair] for pair in self.gram.problem.pairs]
-        )
-        is_box = box[start.pair]
+        is_box = self.gram.box[start.pair]
         now, trust = start, 0.3
         tau = self.torque(now)
         value = float(np.abs(tau).max())

@@ -1,8 +1,8 @@
 """Local improvement of few springs under the true constraints: many starts at once.
 
-A projected Levenberg-Marquardt method on the Gram form, batched over starts in plain numpy: the problems are tiny (about
-40 residuals, 7 unknowns a spring) and there are thousands of starts, so that a library call per start would spend its
-time in overhead. Unknowns per spring: log stiffness, and both attachments in their regions' own coordinates.
+A projected Levenberg-Marquardt method on the Gram form, batched over starts in plain numpy: the problems are tiny
+(about 40 residuals, 7 unknowns a spring) and there are thousands of starts, so that a library call per start would
+spend its time in overhead. Unknowns per spring: log stiffness, and both attachments in their regions' coordinates.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rotation import Array
+from ..arrays import Array, Booleans, Integers
 from .gram import Gram
 
 ITERATIONS = 150
@@ -26,14 +26,14 @@ class Springs:
     `u` is in the regions' own coordinates (unit ball or box); `pair` (batch, springs) is the number of the body pair.
     """
 
-    pair: Array
+    pair: Integers
     k: Array
     u: Array
 
     def __len__(self) -> int:
         return len(self.k)
 
-    def __getitem__(self, chosen: Array | slice) -> Springs:
+    def __getitem__(self, chosen: Integers | slice) -> Springs:
         return Springs(self.pair[chosen], self.k[chosen], self.u[chosen])
 
     @property
@@ -42,7 +42,7 @@ class Springs:
         one = np.ones((*self.k.shape, 1))
         return np.concatenate([self.u[:, :, 0], one, self.u[:, :, 1]], axis=-1)
 
-    def moved(self, step: Array, is_box: Array) -> Springs:
+    def moved(self, step: Array, is_box: Booleans) -> Springs:
         """The sets after a `step` (batch, springs, 7): log stiffness, then both attachments, back into the regions."""
         u = self.u + step[..., 1:].reshape(self.u.shape)
         return Springs(self.pair, self.k * np.exp(step[..., 0]), project(u, is_box))
@@ -80,10 +80,9 @@ def polish(gram: Gram, start: Springs, iterations: int = ITERATIONS) -> tuple[Sp
     Returns:
         The improved sets and their root mean square torque (batch,), as a share of the unbalanced one.
     """
-    box = np.array([[gram.problem.regions[name].shape == "box" for name in pair] for pair in gram.problem.pairs])
-    is_box = box[start.pair]  # (batch, springs, 2)
+    is_box = gram.box[start.pair]  # (batch, springs, 2)
     reference = np.log(start.k)
-    now, damping = start, np.full(len(start), 1e-3)
+    now, damping = Springs(start.pair, start.k.copy(), start.u.copy()), np.full(len(start), 1e-3)
     r = residual(gram, now)
     cost = np.einsum("br,br->b", r, r)
     alive = np.ones(len(start), bool)
@@ -106,7 +105,7 @@ def polish(gram: Gram, start: Springs, iterations: int = ITERATIONS) -> tuple[Sp
     return now, np.sqrt(cost + gram.rest**2)
 
 
-def _step(gram: Gram, x: Springs, r: Array, damping: Array, is_box: Array, reference: Array) -> Springs:
+def _step(gram: Gram, x: Springs, r: Array, damping: Array, is_box: Booleans, reference: Array) -> Springs:
     """One damped Gauss-Newton step, projected onto the regions, with outward directions at the boundary frozen."""
     B, S = x.k.shape
     J = jacobian(gram, x)
@@ -132,13 +131,13 @@ def jacobian(gram: Gram, x: Springs) -> Array:
     return np.concatenate([by_k[..., None], by_u], axis=-1).transpose(0, 2, 1, 3).reshape(B, -1, 7 * S)
 
 
-def project(u: Array, is_box: Array) -> Array:
+def project(u: Array, is_box: Booleans) -> Array:
     """The nearest point of each region: the unit box or the unit ball. u: (..., 3), is_box: (...)."""
     norm = np.linalg.norm(u, axis=-1, keepdims=True)
     return np.where(is_box[..., None], np.clip(u, -1, 1), u / np.maximum(norm, 1.0))
 
 
-def _free(u: Array, gradient: Array, is_box: Array) -> Array:
+def _free(u: Array, gradient: Array, is_box: Booleans) -> Array:
     """(B, S, 7, 7) projectors onto the directions a step may take: not out of a region through its boundary."""
     B, S = u.shape[:2]
     out_of_box = (np.abs(u) >= 1 - 1e-12) & (gradient * u < 0)

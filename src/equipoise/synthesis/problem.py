@@ -12,10 +12,10 @@ from typing import Literal
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
 from ..mechanism import WORLD, Mechanism
-from ..rotation import Array
 from .mounts import Mounts
 
 Pair = tuple[str, str]
@@ -38,12 +38,12 @@ class Region:
     def ball(radius: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
         """A ball around `centre` [m]."""
         x, y, z = centre
-        return Region((x, y, z), (radius,) * 3, "ball")
+        return Region((x, y, z), (radius, radius, radius), "ball")
 
     @staticmethod
     def box(half: float | Iterable[float], centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
         """A box around `centre`, +-`half` along each axis of the body [m]."""
-        hx, hy, hz = (half,) * 3 if isinstance(half, (int, float)) else half
+        hx, hy, hz = [float(half)] * 3 if isinstance(half, (int, float)) else half
         x, y, z = centre
         return Region((x, y, z), (hx, hy, hz), "box")
 

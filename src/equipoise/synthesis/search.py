@@ -13,7 +13,7 @@ from math import comb
 
 import numpy as np
 
-from .convex import Bound, least_rms
+from .bound import Bound, least_rms
 from .gram import Gram
 from .polish import STALL, Springs, best_stiffness, polish, project
 
@@ -24,6 +24,7 @@ EXHAUSTIVE = 500  # sets of pairs up to which every one gets its bound
 BEAM = 6  # otherwise only the best so many sets are extended by one more pair
 SETS = 10  # sets of pairs polished for each number of springs
 STARTS = 48  # random starts on each
+NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
 FIRST = 30  # iterations from every start, before
 SECOND = 24  # starts, the best so far, are polished to the end
 SPLITS = 6  # ways to distribute the springs over the pairs of a set
@@ -118,12 +119,11 @@ class Search:
         spare = count - len(chosen)
         splits = list(islice(combinations_with_replacement(range(len(chosen)), spare), SPLITS))
         local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], STARTS, axis=0)
-        shapes = [[gram.problem.regions[name].shape == "box" for name in pair] for pair in gram.problem.pairs]
-        u = project(rng.uniform(-1, 1, (*local.shape, 2, 3)), np.array(shapes)[local])
+        u = project(rng.uniform(-1, 1, (*local.shape, 2, 3)), gram.box[local])
         start = best_stiffness(gram, Springs(local, np.ones(local.shape), u))
         springs, value = polish(gram, start, FIRST)
         springs, value = polish(gram, springs[np.argsort(value)[:SECOND]])
-        good = np.flatnonzero(value <= max(value.min() * (1 + 1e-6), 10 * STALL))
+        good = np.flatnonzero(value <= max(value.min() * (1 + NEARLY), 10 * STALL))
         winner = good[springs.store(gram)[good].argmin()]  # among equals, the one that stores least
         chosen_springs = springs[winner : winner + 1]
         numbered = Springs(np.array(chosen)[chosen_springs.pair], chosen_springs.k, chosen_springs.u)

@@ -1,0 +1,99 @@
+"""Values typed on the command line: quantities, pairs, regions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .errors import Fault, InputError, nearest
+from .synthesis import Region
+from .units import to_si
+
+
+def length(text: str, option: str) -> float:
+    """A length such as ``0.15`` [m] or ``150mm``.
+
+    Raises:
+        InputError: it is not a length; the message names the option.
+    """
+    return _quantity(text, "length", option)
+
+
+def tolerance(text: str) -> tuple[float | None, float | None]:
+    """(share, torque [N m]): ``1e-3`` and ``0.1%`` are shares of the unbalanced torque, ``0.5 N*m`` is a torque.
+
+    Raises:
+        InputError: it is neither, or not positive.
+    """
+    try:
+        share, torque = (float(text.removesuffix("%")) / (100 if text.endswith("%") else 1), None)
+    except ValueError:
+        share, torque = None, _quantity(text, "torque", "--tolerance")
+    if not (share if torque is None else torque) > 0:  # type: ignore[operator] - one of the two is a number
+        raise InputError(Fault(("--tolerance",), f"must be more than 0, found {text}"))
+    return share, torque
+
+
+def pairs(text: str) -> list[tuple[str, str]]:
+    """``A:B,C:D`` as pairs of body names.
+
+    Raises:
+        InputError: a part is not two names with a colon between.
+    """
+    found = []
+    for part in text.split(","):
+        names = [name.strip() for name in part.split(":")]
+        if len(names) != 2 or not all(names):
+            raise InputError(Fault(("--pairs",), f"expected A:B,C:D with names of bodies, found '{part.strip()}'"))
+        found.append((names[0], names[1]))
+    return found
+
+
+def regions(texts: list[str], box: bool) -> dict[str, Region]:
+    """``BODY=RADIUS`` as attachment regions around the bodies' origins.
+
+    Raises:
+        InputError: no ``=``, or not a length more than 0.
+    """
+    make = Region.box if box else Region.ball
+    found = {}
+    for text in texts:
+        body, equals, radius = text.rpartition("=")
+        if not equals:
+            raise InputError(Fault(("--region",), f"expected BODY=RADIUS, found '{text}'"))
+        size = length(radius, "--region")
+        if size <= 0:
+            raise InputError(Fault(("--region",), f"must be more than 0 m, found {text}"))
+        found[body.strip()] = make(size)
+    return found
+
+
+def settings(texts: list[str], valid: dict[str, str]) -> dict[str, Any]:
+    """``NAME=VALUE`` of ``--set``, for the parameters that a method has.
+
+    Raises:
+        InputError: an unknown name, or a value of the wrong kind.
+    """
+    found: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or name not in valid:
+            problem = f"no parameter {nearest(name, valid)}" if equals else f"expected NAME=VALUE, found '{text}'"
+            raise InputError(Fault(("--set",), problem, tuple(valid)))
+        found[name] = _value(name, value)
+    return found
+
+
+def _value(name: str, text: str) -> Any:
+    if name in ("span", "springs", "samples", "seed"):
+        try:
+            return int(text)
+        except ValueError:
+            raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
+    return length(text, f"--set {name}") if name == "radius" else text
+
+
+def _quantity(text: str, dimension: str, option: str) -> float:
+    try:
+        return to_si(text, dimension)
+    except ValueError as error:
+        raise InputError(Fault((option,), str(error))) from None

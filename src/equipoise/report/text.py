@@ -1,0 +1,158 @@
+"""Verdicts and designs as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from rich.console import Console, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from ..balance import Balance
+from ..mechanism import Mechanism
+from ..spring import Vec3
+from ..synthesis import METHODS, Design
+
+
+def console(stderr: bool = False) -> Console:
+    """A console that never cuts a table: at least 120 columns when the output is not a terminal."""
+    plain = Console(stderr=stderr, highlight=False)
+    return plain if plain.is_terminal else Console(stderr=stderr, highlight=False, width=max(plain.width, 120))
+
+
+def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableType]:
+    """The verdict, the torques per coordinate, the energies, the worst pose and the springs."""
+    m = balance.mechanism
+    yield Text(f"{m.name}: {_count(m.coordinates, 'coordinate')}, {_count(m.springs, 'spring')}", style="bold")
+    yield verdict(balance)
+    if tolerance:
+        yield Text(tolerance)
+    yield torque_table(balance)
+    low, high = balance.total
+    yield Text(
+        f"energy: gravity {_range(balance.gravity)}, springs {_range(balance.springs)}, "
+        f"total {_range((low, high))}, mean {balance.constant:.6g} J"
+    )
+    if not balance.exact and len(m.coordinates):
+        pose = ", ".join(
+            f"{name} {_pose(value, unit)}"
+            for name, value, unit in zip(m.coordinates, balance.worst_configuration, m.coordinate_units, strict=True)
+        )
+        yield Text(f"worst pose: {pose}")
+    yield from spring_lines(balance)
+
+
+def verdict(balance: Balance) -> Text:
+    """One line: exact or how far from it, and what that rests on."""
+    certificate = balance.certificate
+    if certificate.kind == "fourier":
+        largest = f"{certificate.terms:,} Fourier terms, the largest that varies is {certificate.max_coefficient:.2g} J"
+        if balance.exact:
+            return Text(f"EXACT: balanced at every configuration, proved ({largest})", style="bold green")
+        basis = f"proved over all configurations ({largest})"
+    else:
+        basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
+    if not len(balance.mechanism.coordinates):
+        return Text("nothing moves: no coordinate to balance", style="yellow")
+    if np.isinf(balance.relative):
+        return Text(f"NOT BALANCED: the springs load joints that gravity does not; {basis}", style="bold yellow")
+    share = f"peak residual torque {_percent(balance.relative)} of the unbalanced peak"
+    return Text(f"NOT EXACT: {share}; {basis}", style="bold yellow")
+
+
+def torque_table(balance: Balance) -> Table:
+    """Unbalanced and residual torque of every coordinate."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("joint", no_wrap=True)
+    for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
+        table.add_column(title, justify="right", no_wrap=True)
+    m = balance.mechanism
+    for j, (name, unit) in enumerate(zip(m.coordinates, m.coordinate_units, strict=True)):
+        loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
+        bound = "-" if balance.bound is None else _torque(balance.bound[j])
+        table.add_row(name, *(_torque(load[j]) for load in loads), bound, "N m" if unit == "rad" else "N")
+    return table
+
+
+def spring_lines(balance: Balance) -> Iterator[Text]:
+    """Each spring with its stiffness, attachments, greatest length and greatest force."""
+    for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
+        free = f", free length {1e3 * spring.free_length:.4g} mm" if spring.free_length else ""
+        ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)}"
+        most = f"at most {1e3 * use.max_length:.4g} mm and {use.max_force:.4g} N"
+        yield Text(f"{spring.name}: {spring.stiffness:.5g} N/m{free}, {ends}, {most}")
+
+
+def design_lines(design: Design) -> Iterator[RenderableType]:
+    """What was reached, how that compares with the best possible, the front if there is one, and the verdict."""
+    share = design.residual / design.unbalanced
+    yield Text(f"method {design.method}, objective {design.objective} torque of all joints", style="bold")
+    where = "all configurations" if design.averaged else f"{design.samples:,} random poses"
+    yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
+    yield Text(f"  residual    {_torque(design.residual)} N m  = {_percent(share)} of unbalanced")
+    if design.bound is not None and design.certified_gap is not None:
+        yield Text(
+            f"  bound       {_torque(design.bound)} N m  = {_percent(design.bound / design.unbalanced)}: no springs on "
+            f"these pairs and regions leave less; gap {_percent(design.certified_gap)} of unbalanced"
+        )
+    if design.infeasible is not None:
+        yield Text(f"  {design.infeasible}", style="yellow")
+    if design.front:
+        yield front_table(design)
+    yield from balance_lines(design.balance)
+
+
+def front_table(design: Design) -> Table:
+    """Residual against number of springs."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("springs", justify="right")
+    for title in ("residual [N m]", "of unbalanced", "bound [N m]"):
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("on pairs")
+    for row in design.front:
+        table.add_row(
+            str(row.springs),
+            "exact" if row.exact else _torque(row.residual),
+            _percent(row.residual / design.unbalanced),
+            "-" if row.bound is None else _torque(row.bound),
+            " ".join(f"{a}:{b}" for a, b in row.pairs),
+        )
+    return table
+
+
+def methods_table(mechanism: Mechanism) -> Table:
+    """Which methods apply to a mechanism, and why the others do not."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for title in ("method", "applies", "what it does", "--set"):
+        table.add_column(title)
+    for method in METHODS.values():
+        reasons = method.applies(mechanism)
+        answer = "yes" if not reasons else f"no: {'; '.join(reasons)}"
+        parameters = "\n".join(f"{name}: {text}" for name, text in method.parameters.items())
+        table.add_row(method.name, answer, f"{method.summary}\n({method.source})", parameters)
+    return table
+
+
+def _count(items: Sequence[object], noun: str) -> str:
+    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
+
+
+def _torque(value: float) -> str:
+    return "0" if value < 1e-300 else f"{value:.4f}" if value >= 1e-3 else f"{value:.1e}"
+
+
+def _percent(share: float) -> str:
+    return "0 %" if share < 1e-300 else f"{100 * share:.3g} %"
+
+
+def _range(pair: tuple[float, float]) -> str:
+    return f"{pair[0]:.6g} to {pair[1]:.6g} J"
+
+
+def _pose(value: float, unit: str) -> str:
+    return f"{np.degrees(value):.1f} deg" if unit == "rad" else f"{1e3 * value:.1f} mm"
+
+
+def _millimetres(p: Vec3) -> str:
+    return "(" + ", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) + ") mm"

@@ -1,0 +1,118 @@
+"""Random valid mechanisms of realistic size: trees of every kind of joint, with couplings, springs and masses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+
+import numpy as np
+
+from equipoise.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass
+from equipoise.spring import Spring, Vec3
+
+RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
+
+
+def random_mechanism(
+    seed: int,
+    most_joints: int = 8,
+    kinds: Sequence[str] = JOINT_TYPES,
+    free_lengths: bool = True,
+) -> Mechanism:
+    """A mechanism with 1 to `most_joints` joints of these kinds; the same for the same arguments.
+
+    Bodies and joints are listed in random order, couplings may depend on couplings, slides on angles and the reverse.
+    Without `free_lengths` every spring has zero free length.
+    """
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, most_joints + 1))
+    placed = ["world"]
+    bodies, joints = [], []
+    for i in range(count):
+        bodies.append(Body(f"b{i}", _maybe(rng, rng.uniform(0.1, 5)), _vector(rng, 0.3), _inertia(rng)))
+        joints.append(_joint(rng, i, str(rng.choice(list(kinds))), placed))
+        placed.append(f"b{i}")
+    couplings = _couplings(rng, [joint.name for joint in joints if joint.type in SINGLE])
+    springs = []
+    for i in range(int(rng.integers(0, 5))):
+        a, b = rng.choice(placed, 2, replace=False)
+        free = float(rng.choice([0.0, rng.uniform(0.05, 0.5)])) if free_lengths else 0.0
+        mass, split = _maybe(rng, rng.uniform(0, 0.5)), float(rng.uniform())
+        k = float(rng.uniform(10, 500))
+        springs.append(Spring(f"s{i}", str(a), _vector(rng, 0.4), str(b), _vector(rng, 0.4), k, free, mass, split))
+    masses = [
+        PointMass(f"m{i}", str(rng.choice(placed)), float(rng.uniform(0, 2)), _vector(rng, 0.4))
+        for i in range(int(rng.integers(0, 3)))
+    ]
+    return Mechanism(
+        f"random {seed}",
+        tuple(bodies[i] for i in rng.permutation(count)),
+        tuple(joints[i] for i in rng.permutation(count)),
+        couplings=tuple(couplings[i] for i in rng.permutation(len(couplings))),
+        springs=tuple(springs),
+        masses=tuple(masses),
+        gravity=_vector(rng, 10.0),
+    )
+
+
+def random_poses(mechanism: Mechanism, count: int, seed: int = 0) -> np.ndarray:
+    """Configurations (count, n), whatever the joint ranges: -2 to 2 rad or m."""
+    return np.random.default_rng(seed).uniform(-2, 2, (count, len(mechanism.coordinates)))
+
+
+def _joint(rng: np.random.Generator, i: int, kind: str, placed: list[str]) -> Joint:
+    # mostly chains: the last body is the likeliest parent
+    parent = placed[-1] if rng.random() < 0.7 else str(rng.choice(placed))
+    single = kind in SINGLE
+    limits = sorted(rng.uniform(-3, 3, 2).tolist())
+    return Joint(
+        f"j{i}",
+        kind,  # type: ignore[arg-type]  # one of JOINT_TYPES
+        parent,
+        f"b{i}",
+        _vector(rng, 0.5),
+        _angles(rng),
+        _vector(rng, 2.0) if single and rng.random() < 0.5 else _along_one(rng),
+        (limits[0], limits[1]) if single and rng.random() < 0.5 else None,
+        str(rng.choice(placed)) if kind == "parallelogram" else None,
+    )
+
+
+def _couplings(rng: np.random.Generator, single: list[str]) -> list[Coupling]:
+    couplings = []
+    for i, name in enumerate(single):
+        if i and rng.random() < 0.35:
+            on = rng.choice(single[:i], min(i, int(rng.integers(1, 4))), replace=False)
+            terms = tuple((str(other), float(rng.choice(RATIOS))) for other in on)
+            couplings.append(Coupling(name, terms, _maybe(rng, rng.uniform(-2, 2))))
+    return couplings
+
+
+def _maybe(rng: np.random.Generator, value: float) -> float:
+    """The value, or now and then nothing."""
+    return float(value) if rng.random() < 0.8 else 0.0
+
+
+def _vector(rng: np.random.Generator, size: float) -> Vec3:
+    x, y, z = rng.uniform(-size, size, 3).tolist()
+    return x, y, z
+
+
+def _along_one(rng: np.random.Generator) -> Vec3:
+    x, y, z = (float(rng.choice([-1.0, 1.0])) * np.eye(3)[rng.integers(3)]).tolist()
+    return x, y, z
+
+
+def _angles(rng: np.random.Generator) -> Vec3:
+    """Any angles, or as often multiples of a right angle: what gives terms that cancel."""
+    if rng.random() < 0.5:
+        return _vector(rng, pi)
+    x, y, z = (pi / 2 * rng.integers(-1, 3, 3)).tolist()
+    return x, y, z
+
+
+def _inertia(rng: np.random.Generator) -> tuple[float, float, float, float, float, float]:
+    """Well inside the triangle inequality."""
+    x, y, z = rng.uniform(0.02, 0.03, 3).tolist()
+    a, b, c = rng.uniform(-0.002, 0.002, 3).tolist()
+    return x, y, z, a, b, c
