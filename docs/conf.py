@@ -1,15 +1,16 @@
 """Sphinx configuration. The package is read from the source tree; only its dependencies must be installed."""
 
 import sys
-import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "src"))
 
+from equipoise import __version__  # noqa: E402 - from the source tree, which has to be on the path first
+
 project = "equipoise"
 author = "The equipoise developers"
-release = version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+release = version = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["_build"]

@@ -211,3 +211,21 @@ def test_exact_needs_enough_springs():
     with pytest.raises(InfeasibleError, match="allow more springs"):
         eq.design(lee_chen(), span=3, radius=0.2, springs=2, exact=True)
     assert FEASIBLE < 1e-5
+
+
+def test_only_the_chosen_joints_count():
+    arm = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
+    design = eq.design(arm, pairs=[("world", "link3")], radius=0.2, joints=["joint3"], springs=2)
+    assert design.unbalanced < eq.design(arm, pairs=[("world", "link3")], radius=0.2, springs=2).unbalanced
+    torque = Potential(design.mechanism)(np.random.default_rng(0).uniform(-np.pi, np.pi, (50_000, 2))).torque
+    assert design.residual == pytest.approx(np.sqrt((torque[:, 1] ** 2).mean()), rel=0.02, abs=1e-12)
+    with pytest.raises(InputError, match="no independent joint 'joint4'"):
+        eq.design(arm, joints=["joint4"])
+    with pytest.raises(InputError, match="no joint is named"):
+        eq.design(arm, joints=[])
+
+
+def test_a_counterweighted_arm_has_nothing_to_balance():
+    arm = planar_arm([2.0], [0.5], [0.3]).with_masses([eq.PointMass("counterweight", "link2", 3.0, (-0.2, 0, 0))])
+    with pytest.raises(InputError, match="nothing to balance"):
+        eq.design(arm)

@@ -148,6 +148,7 @@ def design(
     box: Annotated[bool, typer.Option("--box", help="regions are boxes of +-radius, not balls")] = False,
     springs: Annotated[int | None, typer.Option(min=1, help="at most this many (default: as few as do)")] = None,
     objective: Annotated[str, typer.Option(help="rms or peak torque")] = "rms",
+    joints: Annotated[str | None, typer.Option(metavar="A,B,...", help="the joints that count (default: all)")] = None,
     front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
     exact: Annotated[bool, typer.Option("--exact", help="insist on exact balance; exit code 1 if infeasible")] = False,
     unlimited: Annotated[
@@ -179,6 +180,7 @@ def design(
         "regions": options.regions(region or [], box),
         "springs": springs,
         "objective": objective,
+        "joints": None if joints is None else options.names(joints),
         "samples": samples,
         "unlimited": unlimited,
         "exact": exact,

@@ -33,6 +33,11 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     return share, torque
 
 
+def names(text: str) -> list[str]:
+    """``A,B,C`` as names."""
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
 def pairs(text: str) -> list[tuple[str, str]]:
     """``A:B,C:D`` as pairs of body names.
 
@@ -89,6 +94,8 @@ def _value(name: str, text: str) -> Any:
             return int(text)
         except ValueError:
             raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
+    if name == "joints":
+        return names(text)
     return length(text, f"--set {name}") if name == "radius" else text
 
 

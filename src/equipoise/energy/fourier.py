@@ -73,7 +73,7 @@ class Frames:
     def linear(self, row: Array, V: dict[int, Series]) -> Series:
         """``row . sum_X R_WX V_X`` with a world vector `row` (3,); coefficients (T, 1, m)."""
         left = self._constant(np.asarray(row)[None])
-        return self._sum([left @ self._relative(0, X) @ v for X, v in V.items()], V)
+        return self._sum([left @ self.relative(0, X) @ v for X, v in V.items()], V)
 
     def quadratic(self, V: dict[int, Series]) -> Series:
         """``|sum_X R_WX V_X|^2``: coefficients (T, m, m), symmetric."""
@@ -82,7 +82,7 @@ class Frames:
             parts.append(v.T @ v)
             for Y, u in V.items():
                 if X < Y:
-                    cross = v.T @ self._relative(X, Y) @ u
+                    cross = v.T @ self.relative(X, Y) @ u
                     parts += [cross, cross.T]
         return self._sum(parts, V)
 
@@ -149,7 +149,8 @@ class Frames:
             self._chains[top, body] = product
         return self._chains[top, body]
 
-    def _relative(self, X: int, Y: int) -> Series:
+    def relative(self, X: int, Y: int) -> Series:
+        """R_XY."""
         above_x, above_y = self._bases(X), self._bases(Y)
         top = next(body for body in above_x if body in above_y)
         left, right = self._chain(top, X), self._chain(top, Y)
@@ -172,7 +173,7 @@ class FourierEnergy:
         frequency, degree: (T, n); the constant term is all zero.
         c: (T,) complex [J, or J/m^degree].
         scale: [J] the size of what has to be balanced: what each mass alone, or where gravity does no work each spring
-            alone, makes the energy vary by, summed before anything cancels.
+            alone, makes the energy vary by, summed before anything cancels; 0 where that is nothing but rounding.
 
     Raises:
         NoFourierForm: a spring has a free length, a coupling ratio is not a fraction, or there are too many terms.
@@ -190,7 +191,7 @@ class FourierEnergy:
         self.frequency = total.keys[:, :n] / frames.denominators
         self.degree = total.keys[:, n:]
         self.c = total.coef[:, 0, 0]
-        self.scale = self._scale(weights, _lever_arms(frames)) or self._scale(springs, 0.0) or _lever_arms(frames)
+        self.scale = self._scale(weights, springs, _moving_weight(frames, self.reach))
 
     @cached_property
     def reach(self) -> Array:
@@ -208,15 +209,22 @@ class FourierEnergy:
         """(T,) the largest value of each term over the range [J], 0 for the constant."""
         return np.where(self.varies, np.abs(self.c) * np.prod(self.reach**self.degree, axis=1), 0.0)
 
-    def _scale(self, parts: list[Series], whole: float) -> float:
-        """How much the parts vary, each on its own [J]; 0 where it is only rounding of the `whole` they belong to."""
-        varying = 0.0
+    def _scale(self, weights: list[Series], springs: list[Series], moving_weight: float) -> float:
+        varying, _ = self._sizes(weights)
+        if varying > ROUNDING * moving_weight:
+            return varying
+        varying, constant = self._sizes(springs)
+        return varying if varying > ROUNDING * constant else 0.0
+
+    def _sizes(self, parts: list[Series]) -> tuple[float, float]:
+        """What the parts vary by at most and their constants [J], each part on its own, before anything cancels."""
+        varying = constant = 0.0
         for part in parts:
             size = np.abs(part.coef[:, 0, 0]) * np.prod(self.reach ** part.keys[:, self.tree.n :], axis=1)
             varies = part.keys.any(axis=1)
             varying += float(size[varies].sum())
-            whole += float(size[~varies].sum())
-        return varying if varying > ROUNDING * whole else 0.0
+            constant += float(size[~varies].sum())
+        return varying, constant
 
     @property
     def constant(self) -> float:
@@ -226,7 +234,8 @@ class FourierEnergy:
     @property
     def exact(self) -> bool:
         """Whether the energy is constant: no term but the constant one above 1e-10 of `scale`, all taken together."""
-        return bool(np.isfinite(self.scale) and self.amplitude.sum() <= EXACT * self.scale)
+        left = self.amplitude.sum()
+        return bool(np.isfinite(left + self.scale) and (self.scale == 0 or left <= EXACT * self.scale))
 
     def torque_bound(self) -> Array:
         """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (slides within `reach`)."""
@@ -282,15 +291,14 @@ def _masses(tree: Tree) -> list[tuple[int, float, Array]]:
     return [(tree.index[body], mass, p) for body, mass, p in lumped_masses(tree.mechanism) if mass]
 
 
-def _lever_arms(frames: Frames) -> float:
-    """[J] sum of m |g| lever arm over all masses, in whatever direction: what the rounding of gravity is a share of."""
-    arms = (
-        float(np.abs(v.coef).sum(axis=0).max())
-        for mass in _masses(frames.tree)
-        for X, v in frames.moment([mass]).items()
-        if X or len(v) > 1  # a mass fixed to the world has nothing to balance
-    )
-    return sum(arms) * float(np.linalg.norm(frames.tree.mechanism.gravity))
+def _moving_weight(frames: Frames, reach: Array) -> float:
+    """[J] sum of m |g| times every lever arm that moves, in any direction: gravity's rounding is a share of it."""
+    total = 0.0
+    for mass in _masses(frames.tree):
+        for X, v in frames.moment([mass]).items():
+            size = np.abs(v.coef[:, :, 0]).sum(axis=1) * np.prod(reach ** v.keys[:, frames.tree.n :], axis=1)
+            total += float(size.sum() if len(frames.relative(0, X)) > 1 else size[v.keys.any(axis=1)].sum())
+    return total * float(np.linalg.norm(frames.tree.mechanism.gravity))
 
 
 def _nonzero(parts: dict[int, list[Series]]) -> dict[int, Series]:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..energy.potential import lumped_masses
 from ..errors import InfeasibleError, InputError
 from ..mechanism import Mechanism
 from ..spring import Spring
@@ -21,6 +22,7 @@ from .problem import Objective, Pair, Problem, Region
 from .search import FEASIBLE, Found, Search
 
 Progress = Callable[[str, float], None]
+ROUNDING = 1e-13
 MOST = 8  # springs tried when no number is given
 NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
 FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
@@ -38,6 +40,7 @@ def design(
     regions: Mapping[str, Region] | None = None,
     springs: int | None = None,
     objective: Objective = "rms",
+    joints: Iterable[str] | None = None,
     samples: int | None = None,
     unlimited: bool = False,
     exact: bool = False,
@@ -49,7 +52,7 @@ def design(
     """Choose springs between bodies of a mechanism (THEORY section 4).
 
     Args:
-        span, pairs, radius, shape, regions, objective, samples, seed: see `Problem.of`.
+        span, pairs, radius, shape, regions, objective, joints, samples, seed: see `Problem.of`.
         springs: at most so many; by default the fewest that are exact where that is possible, else that come within
             1 % of the unbalanced torque of the bound.
         unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
@@ -65,15 +68,15 @@ def design(
     if springs is not None and springs < 1:
         raise InputError(f"springs: must be at least 1, found {springs}")
     bare = mechanism if keep else mechanism.with_springs(())
-    judged = _unlimited(bare) if unlimited else bare
+    judged = over_all_turns(bare) if unlimited else bare
     problem = Problem.of(
-        judged, span=span, pairs=pairs, radius=radius, shape=shape, regions=regions, objective=objective,
+        judged, span=span, pairs=pairs, radius=radius, shape=shape, regions=regions, objective=objective, joints=joints,
         samples=samples, seed=seed,
     )  # fmt: skip
     gram = build(problem, progress)
     options = _options(problem, span if pairs is None else None, springs, unlimited)
-    if gram.unbalanced == 0:
-        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, no joint carries a gravity torque")
+    if gram.unbalanced <= ROUNDING * _weight(bare):
+        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, gravity loads no joint that counts")
     useful = gram.useful
     if not useful:
         raise InfeasibleError("no spring on these pairs has any effect on any joint")
@@ -118,6 +121,12 @@ def applies(mechanism: Mechanism) -> list[str]:
     return ["it has loops, and the closed-loop solver does not exist yet"] if mechanism.loops else []
 
 
+def _weight(mechanism: Mechanism) -> float:
+    """[N m] all the weight at the end of the reach: what rounding is a share of."""
+    mass = sum(mass for _, mass, _ in lumped_masses(mechanism))
+    return mass * float(np.linalg.norm(mechanism.gravity)) * Mounts.of(mechanism).reach
+
+
 def _choose(search: Search, springs: int | None, bound: float) -> Found:
     if springs is not None:
         candidates = [search.best(count) for count in range(1, springs + 1)]
@@ -136,9 +145,10 @@ def _infeasible(gram: Gram, bound: float) -> Infeasible:
     # a large mechanism has hundreds of other pairs: the nearest ones are tried
     missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
     missing = sorted(missing, key=mounts.apart)[:REMEDIES]
-    wider = Problem.of(problem.mechanism, pairs=[*problem.pairs, *missing], regions=dict(problem.regions))
-    if not gram.averaged:
-        wider = replace(wider, samples=FEW)  # feasible at so many random poses is feasible at all
+    pairs = [*problem.pairs, *missing]
+    # exact balance at a few hundred random poses is exact balance: fewer samples will do
+    samples = None if gram.averaged else FEW
+    wider = Problem.of(problem.mechanism, pairs=pairs, regions=problem.regions, joints=problem.joints, samples=samples)
     wide, own = build(wider), list(range(len(problem.pairs)))
     remedies = [p for i, p in enumerate(missing, len(own)) if least_rms(wide.on([*own, i])).value < FEASIBLE]
     unit = gram.unbalanced
@@ -167,7 +177,8 @@ def _row(gram: Gram, found: Found) -> FrontRow:
     return FrontRow(found.count, found.value * gram.unbalanced, bound, pairs, found.exact)
 
 
-def _unlimited(mechanism: Mechanism) -> Mechanism:
+def over_all_turns(mechanism: Mechanism) -> Mechanism:
+    """The mechanism without the ranges of its revolute joints."""
     return replace(
         mechanism, joints=tuple(replace(j, range=None) if j.type == "revolute" else j for j in mechanism.joints)
     )
@@ -183,6 +194,7 @@ def _options(problem: Problem, span: int | None, springs: int | None, unlimited:
         },
         "springs": springs,
         "objective": problem.objective,
+        "joints": None if problem.joints is None else list(problem.joints),
         "samples": problem.samples,
         "unlimited": unlimited,
         "seed": problem.seed,

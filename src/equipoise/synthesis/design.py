@@ -30,7 +30,7 @@ class Infeasible:
     Attributes:
         least: [N m] torque (of the design's objective) that every choice of springs leaves.
         far: the same with regions ten times as large, which tells whether the pairs or the regions are to blame.
-        remedies: pairs any one of which, added, would make exact balance possible.
+        remedies: of the nearest other pairs, 24 at most, those any one of which would make exact balance possible.
     """
 
     pairs: tuple[tuple[str, str], ...]
@@ -46,6 +46,8 @@ class Infeasible:
         if self.remedies:
             text += "; adding any one of these pairs makes it feasible: "
             text += ", ".join(f"{a}:{b}" for a, b in self.remedies)
+        else:
+            text += "; no single further pair makes it feasible"
         return text
 
 

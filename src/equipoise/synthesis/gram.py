@@ -133,7 +133,7 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
     k = keys[:, : tree.n] / frames.denominators
     constant = ~keys.any(axis=1)
     store = smat(A.real[constant, :-1].reshape(-1, len(forms), TRI).sum(axis=0))
-    A *= np.linalg.norm(k, axis=1)[:, None]
+    A *= np.linalg.norm(k * problem.weights, axis=1)[:, None]
     return _triangle(np.vstack([A.real, A.imag])), store
 
 

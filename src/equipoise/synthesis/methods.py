@@ -43,6 +43,7 @@ METHODS: dict[str, Method] = {
                 "radius": "[m] of every attachment region (default: from each link's size)",
                 "springs": "at most this many springs (default: as few as are exact, or within 1 % of the bound)",
                 "objective": "rms or peak torque (default rms)",
+                "joints": "A,B,...: the joints whose torque counts (default: all)",
                 "samples": "random poses to judge on (default: exact averages where possible)",
                 "seed": "of the random starts and poses (default 0)",
             },

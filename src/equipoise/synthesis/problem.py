@@ -68,6 +68,7 @@ class Problem:
         pairs: the pairs of bodies that may be joined by springs.
         regions: attachment region of every body named in `pairs`.
         objective: "rms" (mean square over configurations and joints) or "peak" (the largest torque).
+        joints: the coordinates whose torque counts (all of them when None): the arm of a whole body, for example.
         samples: random poses inside the joint ranges that the goal is judged on; None takes exact averages over all
             configurations where the mechanism allows it, else the workspace's number of samples.
     """
@@ -76,6 +77,7 @@ class Problem:
     pairs: tuple[Pair, ...]
     regions: Mapping[str, Region]
     objective: Objective = "rms"
+    joints: tuple[str, ...] | None = None
     samples: int | None = None
     seed: int = 0
 
@@ -89,6 +91,7 @@ class Problem:
         shape: Literal["ball", "box"] = "ball",
         regions: Mapping[str, Region] | None = None,
         objective: Objective = "rms",
+        joints: Iterable[str] | None = None,
         samples: int | None = None,
         seed: int = 0,
     ) -> Problem:
@@ -97,9 +100,10 @@ class Problem:
         Args:
             span: without `pairs`, every two bodies at most this many moving joints apart.
             radius: [m] of every region without one of its own in `regions`; by default from each link's size.
+            joints: names of joints or coordinates; a spherical joint stands for its three.
 
         Raises:
-            InputError: an unknown body, a pair of one body, an empty list of pairs, a radius that is not positive.
+            InputError: an unknown body or joint, a pair of one body, no pair at all, a radius that is not positive.
             UnsupportedError: the mechanism has loops.
         """
         mounts = Mounts.of(mechanism)
@@ -116,7 +120,8 @@ class Problem:
         make = Region.ball if shape == "ball" else Region.box
         names = dict.fromkeys(name for pair in chosen for name in pair)
         every = {name: given.get(name) or make(radius or mounts.default_radius(name)) for name in names}
-        return Problem(mechanism, chosen, every, objective, samples, seed)
+        counted = None if joints is None else _coordinates(mechanism, joints)
+        return Problem(mechanism, chosen, every, objective, counted, samples, seed)
 
     def on(self, pairs: Iterable[Pair]) -> Problem:
         """The same problem on other pairs (bodies that have a region)."""
@@ -129,7 +134,9 @@ class Problem:
     @cached_property
     def weights(self) -> Array:
         """(n,) what each coordinate's torque counts: 1 for an angle; a force counts at the mechanism's reach [m]."""
-        return np.where(Tree.of(self.mechanism).turns, 1.0, Mounts.of(self.mechanism).reach)
+        every = np.where(Tree.of(self.mechanism).turns, 1.0, Mounts.of(self.mechanism).reach)
+        counted = [self.joints is None or name in self.joints for name in self.mechanism.coordinates]
+        return np.where(counted, every, 0.0)
 
     def lift(self, pair: Pair) -> Array:
         """(7, 7) maps a pair's own coordinates [u_a; 1; u_b] to z = [p_a; 1; p_b]."""
@@ -138,6 +145,19 @@ class Problem:
         L[:4, :4] = a
         L[4:, 4:], L[4:, 3] = b[:3, :3], b[:3, 3]
         return L
+
+
+def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
+    found: list[str] = []
+    for name in joints:
+        own = [c for c in mechanism.coordinates if name in (c, c.rpartition(".")[0])]
+        if not own:
+            problem = f"no independent joint {nearest(name, mechanism.coordinates)}"
+            raise InputError(Fault(("joints",), problem, mechanism.coordinates))
+        found += own
+    if not found:
+        raise InputError(Fault(("joints",), "no joint is named", mechanism.coordinates))
+    return tuple(dict.fromkeys(found))
 
 
 def _known(mechanism: Mechanism, pair: Iterable[str]) -> Pair:

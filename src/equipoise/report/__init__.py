@@ -1,0 +1,1 @@
+"""Figures and reports of a mechanism, its springs and its verdict."""

@@ -1,0 +1,201 @@
+"""One picture of a design: the mechanism with its springs in two poses, and what the springs leave of the torque."""
+
+from __future__ import annotations
+
+import io
+import os
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..balance import Balance, check
+from ..energy.potential import Potential
+from ..errors import Fault, InputError
+from ..kinematics import Tree
+from ..arrays import Array
+from ..mechanism import Mechanism
+from . import arm, loads, style
+from .poses import choose
+from .skeleton import Skeleton
+
+# without what changes from one run or machine to the next
+METADATA: dict[str, dict[str, None]] = {
+    ".svg": {"Date": None, "Creator": None},
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+SIZE, DPI = (14.0, 7.0), 150  # [in], 2100 x 1050 pixels
+LISTED = 10  # springs in the legend
+
+
+def save_figure(
+    mechanism: Mechanism, path: str | os.PathLike[str], *, balance: Balance | None = None, title: str | None = None
+) -> None:
+    """Draw the mechanism with its springs in two poses, beside the holding torque with and without them.
+
+    The same input gives the same bytes. The file is written whole or not at all.
+
+    Args:
+        path: ends in .svg, .png or .pdf.
+        balance: the verdict on `mechanism`, computed when it is not given.
+        title: in place of the mechanism's name.
+
+    Raises:
+        InputError: another suffix, or the folder is missing or cannot be written to.
+        UnsupportedError: the mechanism has loops.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in METADATA:
+        fault = Fault((), f"a figure cannot be written as '{target.suffix}'", tuple(METADATA), file=str(target))
+        raise InputError(fault)
+    if not target.absolute().parent.is_dir():
+        raise _unwritten(target, f"there is no folder '{target.parent}'")
+    if target.is_dir():
+        raise _unwritten(target, "it is a folder")
+    data = _render(mechanism, check(mechanism) if balance is None else balance, title, suffix)
+    _write(target, data)
+
+
+def _render(mechanism: Mechanism, balance: Balance, title: str | None, suffix: str) -> bytes:
+    import matplotlib.style
+    from matplotlib.figure import Figure
+
+    buffer = io.BytesIO()
+    with matplotlib.style.context(["default", style.RC]), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph")  # a name in a script that the font lacks is no error
+        figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
+        _heading(figure, mechanism, balance, title)
+        _poses(figure, mechanism, balance)
+        _legend(figure, mechanism)
+        _torque(figure, balance)
+        figure.savefig(buffer, format=suffix[1:], dpi=DPI, metadata=METADATA[suffix])
+    return buffer.getvalue()
+
+
+def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:
+    count = len(mechanism.springs)
+    name = style.clean(mechanism.name if title is None else title, 60)
+    springs = "no springs" if not count else "1 spring" if count == 1 else f"{count} springs"
+    verdict, small = _verdict(balance)
+    colour = style.FAINT if not count else style.AFTER if loads.below(balance) else style.SPRINGS[0]
+    look = {"weight": "bold", "parse_math": False}
+    figure.text(0.025, 0.93, f"{name}  ·  {springs}", color=style.INK, fontsize=20 if len(name) < 32 else 14, **look)
+    figure.text(0.975, 0.93, verdict, color=colour, ha="right", fontsize=20, **look)
+    figure.text(0.975, 0.885, small, fontsize=12, color=style.FAINT, ha="right")
+
+
+def _verdict(balance: Balance) -> tuple[str, str]:
+    poses, limit = f"{balance.certificate.samples} random poses", loads.below(balance)
+    if not balance.mechanism.springs:
+        return "gravity alone", f"over {poses}"
+    if balance.exact:
+        return "EXACT", f"proved for every pose; residual below {style.power(limit or 0.0)} N m"
+    if limit is not None:
+        return f"residual below {style.power(limit)} N m", f"over {poses}"
+    if not np.isfinite(balance.relative):
+        return "residual torque where gravity had none", f"over {poses}"
+    return f"residual {style.number(100 * balance.relative)} % of unbalanced", f"largest torque over {poses}"
+
+
+def _poses(figure: Any, mechanism: Mechanism, balance: Balance) -> None:
+    skeleton = Skeleton.of(mechanism)
+    view, q = choose(mechanism, skeleton)
+    poses = Tree.of(mechanism).poses(q)
+    state = Potential(mechanism)(q)
+    width, height = 0.29, 0.585
+    limits = arm.window(skeleton, poses, view, width * SIZE[0] / (height * SIZE[1]))
+    for i in range(2):
+        axes = figure.add_axes((0.012 + i * 0.298, 0.3, width, height))
+        axes.set(xlim=limits[0], ylim=limits[1], aspect="equal")
+        axes.set_axis_off()
+        arm.draw(axes, skeleton, poses, i, view)
+        text = _holding(mechanism, balance, state.gravity_torque[i], state.torque[i])
+        axes.text(0.5, -0.005, text, transform=axes.transAxes, ha="center", va="top", color=style.INK, parse_math=False)
+
+
+def _holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array) -> str:
+    """The largest holding torque in a pose, without and with springs."""
+    if not len(before):
+        return ""
+    units = np.array(mechanism.coordinate_units)
+    unit = "rad" if "rad" in units else "m"
+    what, symbol = loads.UNITS[unit]
+    largest = [float(np.abs(torque[units == unit]).max()) for torque in (before, after)]
+    text = f"largest holding {what} {style.number(largest[0])}"
+    if mechanism.springs:
+        limit = loads.below(balance)
+        text += f" → {style.number(largest[1]) if limit is None else 0}"
+    return f"{text} {symbol}"
+
+
+def _legend(figure: Any, mechanism: Mechanism) -> None:
+    springs = mechanism.springs
+    if not springs:
+        return
+    axes = figure.add_axes((0.025, 0.03, 0.57, 0.2))
+    axes.set(xlim=(0, 100), ylim=(5, 0))
+    axes.set_axis_off()
+    wide = len(springs) <= 5
+    for i, spring in enumerate(springs[:LISTED]):
+        x, y = (0.0, i + 0.5) if wide else (52.0 * (i // 5), i % 5 + 0.5)
+        if i == LISTED - 1 and len(springs) > LISTED:
+            axes.text(x, y, f"and {len(springs) - i} more", va="center", color=style.FAINT)
+            break
+        path = arm.zigzag(np.array([x, y]), np.array([x + 9, y]), 0.26)
+        axes.plot(*path.T, color=style.spring_colour(i), linewidth=2.0, solid_joinstyle="round")
+        most = 26 if wide else 14
+        pair = f"{style.clean(spring.body_a, most)} – {style.clean(spring.body_b, most)}"
+        stiffness = f"{f'{spring.stiffness:#.4g}'.rstrip('.')} N/m"
+        size = 12 if wide else 10
+        for at, text, colour in (
+            (11, style.clean(spring.name, 22 if wide else 12), style.INK),
+            (44 if wide else 26, stiffness, style.INK),
+            (47 if wide else 27.5, pair, style.FAINT),
+        ):
+            align = "right" if text is stiffness else "left"
+            axes.text(x + at, y, text, va="center", ha=align, color=colour, fontsize=size, parse_math=False)
+
+
+def _torque(figure: Any, balance: Balance) -> None:
+    groups = loads.shown(balance)
+    if not groups:
+        return
+    names = balance.mechanism.coordinates
+    rows = np.concatenate(list(groups.values()))
+    longest = max(len(style.clean(names[row], loads.NAME)) for row in rows)
+    left, right, bottom, top, gap = 0.625 + 0.0068 * longest, 0.97, 0.185, 0.79, 0.13
+    loads.key(figure, balance, 0.625, 0.845)
+    row = min((top - bottom - gap * (len(groups) - 1)) / len(rows), 0.17)
+    for unit, group in groups.items():
+        axes = figure.add_axes((left, top - row * len(group), right - left, row * len(group)))
+        loads.draw(axes, balance, unit, group)
+        top -= row * len(group) + gap
+    text = f"solid: rms; pale and number: largest, over {balance.certificate.samples} random poses"
+    if len(rows) == loads.MOST < len(names):
+        text += f"\nthe {loads.MOST} of {len(names)} coordinates with the largest unbalanced torque"
+    elif len(rows) < len(names):
+        text += "\nwithout load: " + style.clean(", ".join(name for i, name in enumerate(names) if i not in rows), 50)
+    figure.text(0.625, 0.075, text, va="top", fontsize=11, color=style.FAINT, parse_math=False)
+
+
+def _write(target: Path, data: bytes) -> None:
+    """Into a temporary file beside the target, which then takes its place."""
+    target = Path(os.path.realpath(target))
+    temporary = target.with_name(f".{target.name[:100]}.{os.getpid()}.tmp")
+    try:
+        with open(temporary, "xb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(temporary, target)
+    except OSError as error:
+        raise _unwritten(target, (error.strerror or str(error)).lower()) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _unwritten(target: Path, reason: str) -> InputError:
+    return InputError(Fault((), f"cannot be written: {reason}", file=str(target)))

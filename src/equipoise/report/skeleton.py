@@ -1,0 +1,154 @@
+"""A mechanism as a picture sees it: bars, joints, spring ends and payloads, each fixed in a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from ..kinematics import Poses, Tree
+from ..arrays import Array
+from ..mechanism import Mechanism
+
+SAME = 1e-6  # [m] points closer than this are drawn as one
+
+
+class Point(NamedTuple):
+    """A point `p` (3,) [m] fixed in body number `body`."""
+
+    body: int
+    p: Array
+
+    def at(self, poses: Poses) -> Array:
+        """(N, 3) its place in the world."""
+        return poses.point(self.body, self.p)
+
+
+class Bar(NamedTuple):
+    """A straight line from `a` to `b`, part of body number `body`."""
+
+    body: int
+    a: Point
+    b: Point
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """What is drawn of a mechanism.
+
+    Attributes:
+        bars: the bodies, from joint to joint, and of a last body to its centre of mass or payload.
+        brackets: thin lines from a body to the spring ends and payloads that are not on it.
+        joints: of joints that move.  base: where the mechanism stands.
+        springs, masses: one per spring and point mass.
+        fixed: numbers of the bodies that cannot move, the world among them.
+    """
+
+    bars: tuple[Bar, ...]
+    brackets: tuple[Bar, ...]
+    joints: tuple[Point, ...]
+    base: tuple[Point, ...]
+    springs: tuple[tuple[Point, Point], ...]
+    masses: tuple[Point, ...]
+    fixed: frozenset[int]
+
+    @staticmethod
+    def of(mechanism: Mechanism) -> Skeleton:
+        """The skeleton of `mechanism`.
+
+        Raises:
+            UnsupportedError: it has loops.
+        """
+        tree = Tree.of(mechanism)
+        fixed = {0}
+        for link in tree.links:
+            if link.joint.type == "fixed" and link.parent in fixed:
+                fixed.add(link.body)
+        springs = tuple(
+            (Point(tree.index[s.body_a], np.array(s.p_a)), Point(tree.index[s.body_b], np.array(s.p_b)))
+            for s in mechanism.springs
+        )
+        masses = tuple(Point(tree.index[m.body], np.array(m.position)) for m in mechanism.masses)
+        bars = _bars(tree, masses)
+        base = tuple(Point(0, link.p0) for link in tree.links if link.parent == 0)
+        rest = tree.poses(np.zeros((1, tree.n)))
+        ends = [end for pair in springs for end in pair]
+        brackets = [_bracket(end, bars, fixed, rest) for end in (*ends, *masses)]
+        return Skeleton(
+            bars=bars,
+            brackets=tuple(bar for bar in brackets if _length(bar, rest) > SAME),
+            joints=tuple(Point(link.parent, link.p0) for link in tree.links if link.joint.type != "fixed"),
+            base=base,
+            springs=springs,
+            masses=masses,
+            fixed=frozenset(fixed),
+        )
+
+    def points(self, poses: Poses) -> Array:
+        """(N, K, 3) every point that is drawn."""
+        points = [*self.base, *self.joints, *self.masses]
+        points += [end for bar in (*self.bars, *self.brackets) for end in (bar.a, bar.b)]
+        points += [end for pair in self.springs for end in pair]
+        if not points:
+            return np.zeros((len(poses.p), 1, 3))
+        return np.stack([point.at(poses) for point in points], axis=1)
+
+    def corners(self, poses: Poses) -> Array:
+        """(N, K, 3) the distinct ends of moving bars: points that a good view keeps apart."""
+        found = [end for bar in self.bars if bar.body not in self.fixed for end in (bar.a, bar.b)]
+        if not found:
+            return np.zeros((len(poses.p), 0, 3))
+        places = np.stack([end.at(poses) for end in found], axis=1)
+        coincide = {j for i, j in combinations(range(len(found)), 2) if _apart(places[:, i] - places[:, j]) < SAME}
+        return places[:, [i for i in range(len(found)) if i not in coincide]]
+
+    def ends(self, poses: Poses) -> Array:
+        """(N, springs, 2, 3) where the springs are attached."""
+        if not self.springs:
+            return np.zeros((len(poses.p), 0, 2, 3))
+        return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, b in self.springs], axis=1)
+
+    def middles(self, poses: Poses) -> Array:
+        """(N, springs, 3) the middles of the springs."""
+        return self.ends(poses).mean(axis=2)
+
+
+def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
+    origin, bars = np.zeros(3), []
+    for link in tree.links:
+        if link.parent and np.linalg.norm(link.p0) > SAME:
+            bars.append(Bar(link.parent, Point(link.parent, origin), Point(link.parent, link.p0)))
+        if link.slide is not None:
+            bars.append(Bar(link.body, Point(link.parent, link.p0), Point(link.body, origin)))
+    parents = {link.parent for link in tree.links}
+    for i, body in enumerate(tree.mechanism.bodies, start=1):
+        loads = [mass.p for mass in masses if mass.body == i] + ([np.array(body.com)] if body.mass else [])
+        tip = max(loads, key=lambda p: float(np.linalg.norm(p)), default=origin)
+        if i not in parents and np.linalg.norm(tip) > SAME:
+            bars.append(Bar(i, Point(i, origin), Point(i, tip)))
+    return tuple(bars)
+
+
+def _bracket(end: Point, bars: tuple[Bar, ...], fixed: set[int], rest: Poses) -> Bar:
+    """From the nearest place on the body of `end` to it; all fixed bodies count as one."""
+    group = fixed if end.body in fixed else {end.body}
+    here = end.at(rest)[0]
+    foot = rest.p[0, end.body]
+    for bar in bars:
+        if bar.a.body in group and bar.b.body in group:
+            a, b = bar.a.at(rest)[0], bar.b.at(rest)[0]
+            along = np.clip((here - a) @ (b - a) / max(float((b - a) @ (b - a)), SAME**2), 0, 1)
+            near = a + along * (b - a)
+            if np.linalg.norm(here - near) < np.linalg.norm(here - foot):
+                foot = near
+    return Bar(end.body, Point(end.body, rest.R[0, end.body].T @ (foot - rest.p[0, end.body])), end)
+
+
+def _length(bar: Bar, poses: Poses) -> float:
+    return _apart(bar.a.at(poses) - bar.b.at(poses))
+
+
+def _apart(difference: Array) -> float:
+    return float(np.linalg.norm(difference, axis=-1).max())

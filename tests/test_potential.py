@@ -1,0 +1,396 @@
+"""Energy and torque against a slow reference, MuJoCo and Pinocchio, finite differences, and what must not matter."""
+
+# pyright: reportAttributeAccessIssue=false
+# (the names of MuJoCo and Pinocchio come from compiled modules that ship no type stubs)
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from importlib import import_module
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+from random_mechanisms import random_mechanism, random_poses
+from scipy.spatial.transform import Rotation
+from test_kinematics import slow_poses, slow_values
+from zoo import EXACT, PENDULUM_K, pendulum
+
+from equipoise.energy import Potential
+from equipoise.errors import UnsupportedError
+from equipoise.io import mjcf
+from equipoise.kinematics import Tree
+from equipoise.mechanism import WORLD, Body, Joint, Mechanism
+from equipoise.spring import Spring, Vec3
+
+# under CI it has to be there
+pin: Any = import_module("pinocchio") if os.environ.get("CI") else pytest.importorskip("pinocchio")
+
+
+def slow_energy(m: Mechanism, q: np.ndarray) -> tuple[float, list[float], list[float]]:
+    """Gravity's energy, each spring's, and each spring's length at one configuration."""
+    poses = slow_poses(m, q)
+
+    def at(body: str, p: Vec3) -> np.ndarray:
+        R, origin = poses[body]
+        return origin + R @ np.array(p)
+
+    lumps = [(body.mass, at(body.name, body.com)) for body in m.bodies]
+    lumps += [(mass.mass, at(mass.body, mass.position)) for mass in m.masses]
+    energies, lengths = [], []
+    for s in m.springs:
+        ends = at(s.body_a, s.p_a), at(s.body_b, s.p_b)
+        lengths.append(float(np.linalg.norm(ends[1] - ends[0])))
+        energies.append(s.stiffness / 2 * (lengths[-1] - s.free_length) ** 2)
+        lumps += [(s.mass * s.mass_split, ends[0]), (s.mass * (1 - s.mass_split), ends[1])]
+    return -sum(float(mass * np.dot(m.gravity, p)) for mass, p in lumps), energies, lengths
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_energy(seed: int) -> None:
+    m = random_mechanism(seed)
+    q = random_poses(m, 3, seed)
+    state = Potential(m)(q)
+    for i in range(len(q)):
+        gravity, springs, lengths = slow_energy(m, q[i])
+        assert state.gravity[i] == pytest.approx(gravity, rel=1e-12, abs=1e-11)
+        np.testing.assert_allclose(state.springs[i], springs, rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(state.length[i], lengths, rtol=1e-12, atol=1e-13)
+        assert state.energy[i] == pytest.approx(gravity + sum(springs), rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(80))
+def test_torque_is_the_derivative_of_the_energy(seed: int) -> None:
+    """The work of moving is the torque times the way: central differences, of second order in the step."""
+    m = random_mechanism(seed)
+    potential = Potential(m)
+    rng = np.random.default_rng(seed)
+    for q in random_poses(m, 3, seed):
+        v = rng.normal(size=len(q))
+        v /= max(1.0, float(np.linalg.norm(v)))
+        parts = ("gravity_torque", "spring_torque")
+        for energy, part in zip((lambda s: s.gravity[0], lambda s: s.springs[0].sum()), parts, strict=True):
+            errors = []
+            for h in (2e-3, 1e-3):
+                work = energy(potential(q + h * v)) - energy(potential(q - h * v))
+                errors.append(abs(work / (2 * h) - float((getattr(potential(q), part) @ v)[0])))
+            size = 1 + abs(energy(potential(q)))
+            assert errors[0] < 1e-3 * size
+            if errors[1] > 1e-9 * size:  # less is rounding, or an accident of the direction
+                assert 1.7 < np.log2(errors[0] / errors[1]) < 2.3
+
+
+# MuJoCo --------------------------------------------------------------------------------------------------------------
+
+
+def mujoco_state(m: Mechanism, model: Any, q: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Potential energy, and the torque that holds gravity, and springs, in our coordinates."""
+    data = mujoco.MjData(model)
+    n = len(q)
+    values = dict(zip(m.coordinates, q, strict=True))
+    column = {name: j for j, name in enumerate(m.coordinates)}
+    T = np.zeros((model.nv, n))  # the model's velocities per rate of our coordinates
+    for name, value in mjcf.joint_map(m).items():
+        joint = model.joint(name)
+        row, coordinates = int(joint.dofadr[0]), [coordinate for coordinate, _ in value.terms]
+        if value.type == "ball":
+            # R = Rx Ry Rz; the velocity of a ball is in the child's frame
+            angles = [values[coordinate] for coordinate in coordinates]
+            Ry, Rz = (
+                Rotation.from_euler(letter, angle).as_matrix() for letter, angle in zip("yz", angles[1:], strict=True)
+            )
+            x, y, z, w = Rotation.from_euler("XYZ", angles).as_quat()
+            data.joint(name).qpos[:] = w, x, y, z
+            rates = Rz.T @ Ry.T @ [1, 0, 0], Rz.T @ [0, 1, 0], np.array([0, 0, 1])
+            for coordinate, rate in zip(coordinates, rates, strict=True):
+                T[row : row + 3, column[coordinate]] = rate
+        else:
+            data.joint(name).qpos[:] = value.offset + sum(ratio * values[other] for other, ratio in value.terms)
+            for other, ratio in value.terms:
+                T[row, column[other]] += ratio
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mj_fwdVelocity(model, data)  # at rest: gravity and springs
+    mujoco.mj_energyPos(model, data)
+    return float(data.energy[0]), T.T @ data.qfrc_bias, -T.T @ data.qfrc_passive
+
+
+@pytest.mark.slow
+def test_500_mechanisms_agree_with_mujoco() -> None:
+    done, with_parallelogram, with_ball, with_coupling, seed = 0, 0, 0, 0, 10_000
+    while done < 500:
+        seed += 1
+        m = random_mechanism(seed)
+        try:
+            model = mujoco.MjModel.from_xml_string(mjcf.to_text(m))
+        except UnsupportedError:
+            continue  # a ball between what a parallelogram joins and what it follows
+        done += 1
+        kinds = {joint.type for joint in m.joints}
+        with_parallelogram += "parallelogram" in kinds
+        with_ball += "spherical" in kinds
+        with_coupling += bool(m.couplings)
+        q = random_poses(m, 3, seed)
+        state = Potential(m)(q)
+        found = [mujoco_state(m, model, pose) for pose in q]
+        # MuJoCo's energy leaves out what is fixed to the world, a constant
+        energy = state.energy - np.array([energy for energy, _, _ in found])
+        size = np.abs(state.gravity).max() + np.abs(state.springs).sum(axis=1).max()
+        assert np.ptp(energy) <= 1e-9 * max(size, 1e-3), seed  # massless bodies weigh 1e-13 kg there
+        torque = np.hstack([state.gravity_torque, state.spring_torque])
+        expected = np.array([np.hstack(parts) for _, *parts in found]).reshape(torque.shape)
+        assert np.abs(torque - expected).max(initial=0) <= 1e-9 * max(np.abs(expected).max(initial=0), 1e-3), seed
+    assert min(with_parallelogram, with_ball, with_coupling) > 80
+
+
+# Pinocchio -----------------------------------------------------------------------------------------------------------
+
+
+def pinocchio_model(m: Mechanism) -> tuple[Any, list[str]]:
+    """Gravity and masses as a Pinocchio model; the names of its joint values in its order. No parallelograms."""
+    model, names = pin.Model(), []
+    model.gravity.linear = np.array(m.gravity)
+    holder = {joint.child: joint for joint in m.joints}
+    placed = {WORLD: (0, pin.SE3.Identity())}  # body -> its Pinocchio joint, and where it sits on it
+
+    def place(body: str) -> tuple[int, Any]:
+        if body not in placed:
+            j = holder[body]
+            parent, X = place(j.parent)
+            X = X * pin.SE3(Rotation.from_euler("xyz", j.rpy).as_matrix(), np.array(j.xyz))
+            axis = np.array(j.axis) / np.linalg.norm(j.axis)
+            kinds = {
+                "revolute": [(pin.JointModelRevoluteUnaligned(axis), j.name)],
+                "prismatic": [(pin.JointModelPrismaticUnaligned(axis), j.name)],
+                "spherical": [
+                    (kind(), f"{j.name}.{letter}")
+                    for kind, letter in ((pin.JointModelRX, "x"), (pin.JointModelRY, "y"), (pin.JointModelRZ, "z"))
+                ],
+                "fixed": [],
+            }
+            for kind, name in kinds[j.type]:
+                parent, X = model.addJoint(parent, kind, X, name), pin.SE3.Identity()
+                names.append(name)
+            placed[body] = parent, X
+        return placed[body]
+
+    lumps = [(body.name, body.mass, body.com) for body in m.bodies]
+    lumps += [(mass.body, mass.mass, mass.position) for mass in m.masses]
+    for s in m.springs:
+        lumps += [(s.body_a, s.mass * s.mass_split, s.p_a), (s.body_b, s.mass * (1 - s.mass_split), s.p_b)]
+    for body, mass, p in lumps:
+        joint, X = place(body)
+        model.appendBodyToJoint(joint, pin.Inertia(mass, np.array(p), np.zeros((3, 3))), X)
+    return model, names
+
+
+def test_gravity_agrees_with_pinocchio() -> None:
+    for seed in range(200):
+        m = random_mechanism(seed, kinds=("fixed", "revolute", "prismatic", "spherical"))
+        model, names = pinocchio_model(m)
+        data = model.createData()
+        q = random_poses(m, 3, seed)
+        state = Potential(m)(q)
+        energies = []
+        for i, pose in enumerate(q):
+            start = slow_values(m, np.zeros(len(pose)))
+            s = slow_values(m, pose)
+            unit = [slow_values(m, row) for row in np.eye(len(pose))]
+            T = np.array([[one[name] - start[name] for one in unit] for name in names]).reshape(len(names), len(pose))
+            values = np.zeros(model.nq)
+            for k, name in enumerate(names):
+                values[model.joints[model.getJointId(name)].idx_q] = s[name]
+                assert model.joints[model.getJointId(name)].idx_v == k
+            torque = T.T @ pin.computeGeneralizedGravity(model, data, values)
+            size = max(np.abs(torque).max(initial=0), 1e-2)
+            np.testing.assert_allclose(state.gravity_torque[i], torque, atol=1e-10 * size, rtol=0)
+            energies.append(pin.computePotentialEnergy(model, data, values))
+        # Pinocchio leaves out what is fixed to the world, a constant
+        assert np.ptp(state.gravity - np.array(energies)) <= 1e-10 * max(np.abs(state.gravity).max(), 1e-2), seed
+
+
+# What must not matter ------------------------------------------------------------------------------------------------
+
+
+def vec3(v: np.ndarray) -> Vec3:
+    x, y, z = v.tolist()
+    return x, y, z
+
+
+def rotation(rpy: Vec3) -> np.ndarray:
+    return Rotation.from_euler("xyz", rpy).as_matrix()
+
+
+def rpy(R: np.ndarray) -> Vec3:
+    return vec3(Rotation.from_matrix(R).as_euler("xyz"))
+
+
+def moved_points(m: Mechanism, body: str, R: np.ndarray, p: np.ndarray) -> Mechanism:
+    """Every point that is given in the frame of `body`, given in another one: x -> R x + p."""
+
+    def move(name: str, point: Vec3) -> Vec3:
+        return vec3(R @ point + p) if name == body else point
+
+    return replace(
+        m,
+        bodies=tuple(replace(b, com=move(b.name, b.com), inertia=None) for b in m.bodies),
+        masses=tuple(replace(x, position=move(x.body, x.position)) for x in m.masses),
+        springs=tuple(replace(s, p_a=move(s.body_a, s.p_a), p_b=move(s.body_b, s.p_b)) for s in m.springs),
+    )
+
+
+def moved_children(joints: tuple[Joint, ...], body: str, R: np.ndarray, p: np.ndarray) -> tuple[Joint, ...]:
+    """The joints that hang on `body`, or follow it, when its frame is another one: x -> R x + p."""
+    result = []
+    for j in joints:
+        xyz = vec3(R @ j.xyz + p) if j.parent == body else j.xyz
+        turned = (j.follows or j.parent) == body
+        result.append(replace(j, xyz=xyz, rpy=rpy(R @ rotation(j.rpy)) if turned else j.rpy))
+    return tuple(result)
+
+
+def in_another_world(m: Mechanism, R: np.ndarray, p: np.ndarray) -> Mechanism:
+    """Everything, gravity too, rotated and translated."""
+    m = moved_points(m, WORLD, R, p)
+    return replace(m, joints=moved_children(m.joints, WORLD, R, p), gravity=vec3(R @ m.gravity))
+
+
+def relabelled(m: Mechanism, body: str, rng: np.random.Generator) -> Mechanism:
+    """The same mechanism with the frame of `body` elsewhere in it, as far as its joint leaves a choice."""
+    joint = next(j for j in m.joints if j.child == body)
+    if joint.type == "spherical":  # its frame is where its three angles are zero
+        return m
+    R_BN, p_BN = Rotation.random(rng=rng).as_matrix(), rng.uniform(-1, 1, 3)
+    axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
+    if joint.type == "revolute":
+        p_BN = 0.7 * axis  # the origin stays on the axis
+    elif joint.type == "parallelogram":
+        p_BN = np.zeros(3)
+    R0 = rotation(joint.rpy)
+    new = replace(joint, xyz=vec3(joint.xyz + R0 @ p_BN), rpy=rpy(R0 @ R_BN), axis=vec3(R_BN.T @ np.array(joint.axis)))
+    m = moved_points(m, body, R_BN.T, -R_BN.T @ p_BN)
+    joints = moved_children(m.joints, body, R_BN.T, -R_BN.T @ p_BN)
+    # a parallelogram may have a parent that is not what it follows: `joint` itself never hangs on `body`
+    return replace(m, joints=tuple(new if j.name == joint.name else j for j in joints))
+
+
+def swapped_ends(m: Mechanism) -> Mechanism:
+    return m.with_springs(
+        replace(s, body_a=s.body_b, p_a=s.p_b, body_b=s.body_a, p_b=s.p_a, mass_split=1 - s.mass_split)
+        for s in m.springs
+    )
+
+
+def assert_same(m: Mechanism, other: Mechanism, seed: int) -> None:
+    """The same torques and lengths at the same configurations, and energies that differ by a constant at most."""
+    q = random_poses(m, 4, seed)
+    order = [m.coordinates.index(name) for name in other.coordinates]
+    a, b = Potential(m)(q), Potential(other)(q[:, order])
+    for part in ("gravity_torque", "spring_torque"):
+        first, second = getattr(a, part)[:, order], getattr(b, part)
+        np.testing.assert_allclose(second, first, rtol=0, atol=1e-12 * (10 + np.abs(first).max(initial=0)))
+    np.testing.assert_allclose(b.springs, a.springs, rtol=1e-11, atol=1e-10)
+    np.testing.assert_allclose(b.length, a.length, rtol=1e-11, atol=1e-12)
+    assert np.ptp(b.gravity - a.gravity) <= 1e-11 * (1 + np.abs(a.gravity).max())
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_where_the_world_is_does_not_matter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    m = random_mechanism(seed)
+    assert_same(m, in_another_world(m, Rotation.random(rng=rng).as_matrix(), rng.uniform(-2, 2, 3)), seed)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_where_a_body_frame_is_does_not_matter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    m = random_mechanism(seed)
+    assert_same(m, relabelled(m, f"b{rng.integers(len(m.bodies))}", rng), seed)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_which_end_comes_first_does_not_matter(seed: int) -> None:
+    m = random_mechanism(seed)
+    assert_same(m, swapped_ends(m), seed)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_order_in_the_file_does_not_matter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    m = random_mechanism(seed)
+    bodies = tuple(m.bodies[i] for i in rng.permutation(len(m.bodies)))
+    joints = tuple(m.joints[i] for i in rng.permutation(len(m.joints)))
+    couplings = m.couplings[::-1]
+    assert_same(m, replace(m, bodies=bodies, joints=joints, couplings=couplings, masses=m.masses[::-1]), seed)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_scaling(seed: int) -> None:
+    """Masses and stiffnesses times s: energies and torques times s. Lengths times s: the gravity part times s."""
+    m, s = random_mechanism(seed), 3.7
+    heavier = replace(
+        m,
+        bodies=tuple(replace(body, mass=s * body.mass) for body in m.bodies),
+        masses=tuple(replace(mass, mass=s * mass.mass) for mass in m.masses),
+        springs=tuple(replace(k, mass=s * k.mass, stiffness=s * k.stiffness) for k in m.springs),
+    )
+    q = random_poses(m, 4, seed)
+    a, b = Potential(m)(q), Potential(heavier)(q)
+    for part in ("gravity", "springs", "gravity_torque", "spring_torque"):
+        size = np.abs(getattr(a, part)).max(initial=0)
+        np.testing.assert_allclose(getattr(b, part), s * getattr(a, part), rtol=1e-12, atol=1e-13 * size)
+    np.testing.assert_array_equal(a.length, b.length)
+
+
+# Known answers -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_the_zoo_is_balanced_everywhere(name: str) -> None:
+    known = EXACT[name]()
+    assert known.energy is not None
+    state = Potential(known.mechanism)(random_poses(known.mechanism, 500))
+    size = max(np.ptp(state.gravity), 1.0)
+    np.testing.assert_allclose(state.energy, known.energy, atol=1e-12 * size, rtol=1e-13)
+    assert np.abs(state.torque).max() <= 1e-12 * size
+
+
+def test_sign_conventions() -> None:
+    """At rest the arm points along x: holding 2 kg at 0.3 m takes +5.886 N m about the axis that lifts."""
+    state = Potential(pendulum())([0.0])
+    assert state.gravity_torque[0, 0] == pytest.approx(5.886, rel=1e-15)
+    assert state.spring_torque[0, 0] == pytest.approx(-5.886, rel=1e-15)
+    assert state.gravity[0] == pytest.approx(0)
+    assert state.springs[0, 0] == pytest.approx(PENDULUM_K / 2 * (0.2**2 + 0.15**2), rel=1e-15)
+    assert Potential(pendulum())([np.pi / 2]).gravity[0] == pytest.approx(2 * 9.81 * 0.3, rel=1e-15)
+
+
+def test_a_spring_shorter_than_its_free_length_pushes() -> None:
+    slide = Joint("slide", "prismatic", "world", "block", axis=(1.0, 0.0, 0.0))
+    spring = Spring("s", "world", (0, 0, 0), "block", (0, 0, 0), 100.0, 0.5)
+    potential = Potential(Mechanism("m", (Body("block"),), (slide,), springs=(spring,)))
+    assert potential([0.2]).spring_torque[0, 0] == pytest.approx(-30)  # held back, it would move away
+    assert potential([0.7]).spring_torque[0, 0] == pytest.approx(20)
+    assert potential([-0.2]).spring_torque[0, 0] == pytest.approx(30)
+    assert potential([0.0]).spring_torque[0, 0] == 0  # no direction: none is taken
+    assert potential([0.0]).springs[0, 0] == pytest.approx(12.5)
+
+
+def test_batches_are_the_same_as_poses_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    m = random_mechanism(3)
+    q = random_poses(m, 50)
+    whole = Potential(m)(q)
+    monkeypatch.setattr("equipoise.energy.potential.CHUNK_ENTRIES", 1)
+    for part in ("gravity", "springs", "length", "gravity_torque", "spring_torque"):
+        np.testing.assert_allclose(getattr(Potential(m)(q), part), getattr(whole, part), rtol=1e-13, atol=1e-13)
+    assert Potential(m)(q[:0]).energy.shape == (0,)
+    with pytest.raises(ValueError, match="expected"):
+        Potential(m)(q[:, :-1])
+
+
+def test_coordinates_are_in_the_order_of_the_file() -> None:
+    for seed in range(20):
+        m = random_mechanism(seed)
+        assert Tree.of(m).coordinates == m.coordinates
+        assert len(m.coordinate_units) == len(m.coordinates)
