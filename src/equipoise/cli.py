@@ -9,7 +9,7 @@ import json as json_module
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,6 +21,7 @@ from .errors import EquipoiseError, EquipoiseWarning, InputError
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
+    from .synthesis.problem import Progress
 
 app = typer.Typer(
     name="equipoise",
@@ -34,7 +35,6 @@ app = typer.Typer(
 
 File = Annotated[Path, typer.Argument(help="mechanism file: .yaml or .urdf", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="print one JSON object on standard output")]
-Progress = Callable[[str, float], None]
 
 
 def main() -> None:
@@ -288,13 +288,13 @@ def _warnings() -> Iterator[None]:
 @contextmanager
 def _progress(start: str) -> Iterator[Progress]:
     """A progress bar on standard error, when that is a terminal, for work of more than a second."""
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich import progress
 
     from .report.text import console
 
     screen = console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
+    columns = (progress.TextColumn("{task.description}"), progress.BarColumn(), progress.TimeElapsedColumn())
+    with progress.Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
         task = bar.add_task(start, total=1.0)
         yield lambda what, share: bar.update(task, description=what, completed=share, total=1.0 if share else None)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from rich.console import RenderableType
@@ -13,6 +12,7 @@ from .io import load, save
 from .report.figure import save_figure
 from .report.text import design_lines
 from .synthesis import design
+from .synthesis.problem import Progress
 
 SPAN, RADIUS, SPRINGS = 3, 0.15, 3
 
@@ -25,7 +25,7 @@ def robots() -> Path:
     raise InputError("the example robots are missing from this installation")
 
 
-def run(folder: Path, progress: Callable[[str, float], None]) -> list[RenderableType]:
+def run(folder: Path, progress: Progress) -> list[RenderableType]:
     """Design springs for a UR5, write the design and its figure to `folder`, and return what to print.
 
     Raises:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, Booleans
 from ..errors import Fault, InputError
 from .tree import Tree
 
@@ -32,20 +32,22 @@ def bounds(tree: Tree) -> tuple[Array, Array]:
     return np.where(np.isinf(lower), -free, lower), np.where(np.isinf(upper), free, upper)
 
 
-def whole_turns(tree: Tree) -> bool:
-    """Whether every coordinate is an angle over whole turns and no dependent joint is limited.
+def whole_turns(tree: Tree, periods: ArrayLike = 1) -> bool:
+    """Whether every coordinate is an angle, unlimited or over whole turns, and no dependent joint is limited.
 
-    Then averages over the ranges are averages over all configurations.
+    Then averages over the ranges are averages over all configurations. `periods` (n,) says how many turns of each
+    coordinate bring the mechanism back to where it was: more than one where a coupling has a fractional ratio.
     """
-    lower, upper = bounds(tree)
-    turns = (upper - lower) / (2 * np.pi)
+    rows = tree.coordinate_rows
+    width = tree.upper[rows] - tree.lower[rows]
+    turns = np.where(np.isinf(width), 1.0, width / (2 * np.pi * np.asarray(periods)))
     whole = (np.rint(turns) > 0) & (np.abs(turns - np.rint(turns)) < 1e-6)
-    dependent = np.setdiff1d(np.arange(len(tree.lower)), tree.coordinate_rows)
+    dependent = np.setdiff1d(np.arange(len(tree.lower)), rows)
     limited = np.isfinite(tree.lower[dependent]) | np.isfinite(tree.upper[dependent])
     return bool(tree.turns.all() and whole.all() and not limited.any())
 
 
-def inside(tree: Tree, q: Array, slack: float = 1e-12) -> NDArray[np.bool_]:
+def inside(tree: Tree, q: Array, slack: float = 1e-12) -> Booleans:
     """(N,) whether every joint, dependent ones included, is inside its range at `q` (N, n)."""
     s = q @ tree.C.T + tree.s0
     return np.asarray(((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1))

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Booleans, Integers
 from ..errors import UnsupportedError
 from ..mechanism import SINGLE, Joint, Mechanism
 from ..rotation import about, from_rpy
@@ -133,13 +132,13 @@ class Tree:
         return {link.body: link for link in self.links}
 
     @cached_property
-    def coordinate_rows(self) -> NDArray[np.int_]:
+    def coordinate_rows(self) -> Integers:
         """(n,) the motion row that is coordinate j itself."""
         rows = {name: row for row, name in enumerate(_motion_names(self.mechanism))}
         return np.array([rows[name] for name in self.coordinates], dtype=int)
 
     @property
-    def turns(self) -> NDArray[np.bool_]:
+    def turns(self) -> Booleans:
         """(n,) whether each coordinate is an angle."""
         return self.rotates[self.coordinate_rows]
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..kinematics import Poses
 from ..arrays import Array
+from ..kinematics import Poses
 from . import style
 from .poses import View
 from .skeleton import SAME, Bar, Point, Skeleton
@@ -95,7 +95,9 @@ class _Pen:
 
     def joint(self, point: Point) -> None:
         p, size = self.at(point), self.thick * 0.78
-        order = max((o for ends, o in self.drawn if np.linalg.norm(ends - p, axis=1).min() < SAME), default=self.order(p))
+        order = max(
+            (o for ends, o in self.drawn if np.linalg.norm(ends - p, axis=1).min() < SAME), default=self.order(p)
+        )
         look = {"marker": "o", "markersize": size, "markerfacecolor": "white", "markeredgecolor": style.EDGE}
         self.line(self.view.flat(p[None]), style.EDGE, 0, order + 0.002, markeredgewidth=1.8, **look)
 
@@ -121,7 +123,9 @@ class _Pen:
         s = SUPPORT * self.size
         for point in self.skeleton.base:
             x, y = self.view.flat(self.at(point))
-            self.axes.add_patch(Polygon([(x, y), (x - s, y - 1.3 * s), (x + s, y - 1.3 * s)], color=style.GROUND, zorder=2))
+            self.axes.add_patch(
+                Polygon([(x, y), (x - s, y - 1.3 * s), (x + s, y - 1.3 * s)], color=style.GROUND, zorder=2)
+            )
             self.line(np.array([[x - 2 * s, y - 1.3 * s], [x + 2 * s, y - 1.3 * s]]), style.GROUND, 2.0, 2)
             for left in np.linspace(x - 2 * s, x + 1.5 * s, 8):
                 self.line(np.array([[left, y - 1.8 * s], [left + 0.5 * s, y - 1.3 * s]]), style.GROUND, 1.2, 2)
@@ -155,7 +159,9 @@ class _Pen:
         (left, right), (bottom, _) = self.axes.get_xlim(), self.axes.get_ylim()
         length = _round(0.22 * (right - left))
         x, y, tick = left + 0.03 * (right - left), bottom + 0.03 * self.size, 0.008 * self.size
-        bar = np.array([[x, y + tick], [x, y - tick], [x, y], [x + length, y], [x + length, y + tick], [x + length, y - tick]])
+        bar = np.array(
+            [[x, y + tick], [x, y - tick], [x, y], [x + length, y], [x + length, y + tick], [x + length, y - tick]]
+        )
         self.line(bar, style.FAINT, 1.4, 40, solid_capstyle="butt")
         text = f"{length:g} m" if length >= 0.1 else f"{1000 * length:g} mm"
         self.axes.text(x + length / 2, y + 1.6 * tick, text, color=style.FAINT, ha="center", va="bottom", zorder=40)

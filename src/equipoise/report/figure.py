@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..balance import Balance, check
 from ..energy.potential import Potential
 from ..errors import Fault, InputError
 from ..kinematics import Tree
-from ..arrays import Array
 from ..mechanism import Mechanism
 from . import arm, loads, style
 from .poses import choose

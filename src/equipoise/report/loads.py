@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..balance import Balance
 from ..arrays import Array
+from ..balance import Balance
 from . import style
 
 MOST = 12  # coordinates shown

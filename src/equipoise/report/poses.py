@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..energy.potential import Potential, lumped_masses
 from ..kinematics import Poses, Tree, sample
-from ..arrays import Array
 from ..kinematics.sampling import bounds, inside
 from ..mechanism import Mechanism
 from .skeleton import Skeleton

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..kinematics import Poses, Tree
 from ..arrays import Array
+from ..kinematics import Poses, Tree
 from ..mechanism import Mechanism
 
 SAME = 1e-6  # [m] points closer than this are drawn as one

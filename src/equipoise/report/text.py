@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
+from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
 from ..spring import Vec3
 from ..synthesis import METHODS, Design
@@ -68,10 +69,12 @@ def torque_table(balance: Balance) -> Table:
     for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     m = balance.mechanism
+    floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
     for j, (name, unit) in enumerate(zip(m.coordinates, m.coordinate_units, strict=True)):
         loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
-        bound = "-" if balance.bound is None else _torque(balance.bound[j])
-        table.add_row(name, *(_torque(load[j]) for load in loads), bound, "N m" if unit == "rad" else "N")
+        bound = "-" if balance.bound is None else _torque(balance.bound[j], floor)
+        cells = [_torque(load[j], floor) for load in loads]
+        table.add_row(Text(name), *cells, bound, "N m" if unit == "rad" else "N")
     return table
 
 
@@ -90,12 +93,12 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     yield Text(f"method {design.method}, objective {design.objective} torque of all joints", style="bold")
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses"
     yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
-    yield Text(f"  residual    {_torque(design.residual)} N m  = {_percent(share)} of unbalanced")
+    floor = EXACT * design.unbalanced
+    yield Text(f"  residual    {_torque(design.residual, floor)} N m  = {_percent(share)} of unbalanced")
     if design.bound is not None and design.certified_gap is not None:
-        yield Text(
-            f"  bound       {_torque(design.bound)} N m  = {_percent(design.bound / design.unbalanced)}: no springs on "
-            f"these pairs and regions leave less; gap {_percent(design.certified_gap)} of unbalanced"
-        )
+        least = f"{_torque(design.bound, floor)} N m  = {_percent(design.bound / design.unbalanced)}"
+        gap = f"gap {_percent(design.certified_gap)} of unbalanced"
+        yield Text(f"  bound       {least}: no springs on these pairs and regions leave less; {gap}")
     if design.infeasible is not None:
         yield Text(f"  {design.infeasible}", style="yellow")
     if design.front:
@@ -116,7 +119,7 @@ def front_table(design: Design) -> Table:
             "exact" if row.exact else _torque(row.residual),
             _percent(row.residual / design.unbalanced),
             "-" if row.bound is None else _torque(row.bound),
-            " ".join(f"{a}:{b}" for a, b in row.pairs),
+            Text(" ".join(f"{a}:{b}" for a, b in row.pairs)),
         )
     return table
 
@@ -138,12 +141,16 @@ def _count(items: Sequence[object], noun: str) -> str:
     return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
 
 
-def _torque(value: float) -> str:
-    return "0" if value < 1e-300 else f"{value:.4f}" if value >= 1e-3 else f"{value:.1e}"
+def _torque(value: float, floor: float = 0.0) -> str:
+    if value == 0:
+        return "0"
+    if value < floor:
+        return f"< {floor:.0e}"
+    return f"{value:.4f}" if value >= 1e-3 else f"{value:.1e}"
 
 
 def _percent(share: float) -> str:
-    return "0 %" if share < 1e-300 else f"{100 * share:.3g} %"
+    return "0 %" if share == 0 else f"< {100 * EXACT:.0e} %" if share < EXACT else f"{100 * share:.3g} %"
 
 
 def _range(pair: tuple[float, float]) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
 from ..energy.potential import lumped_masses
-from ..errors import InfeasibleError, InputError
+from ..errors import Fault, InfeasibleError, InputError
 from ..mechanism import Mechanism
 from ..spring import Spring
 from .bound import least_rms
@@ -18,10 +18,9 @@ from .gram import Gram, build
 from .minimax import Peak
 from .mounts import Mounts
 from .polish import Springs
-from .problem import Objective, Pair, Problem, Region
+from .problem import Objective, Pair, Problem, Progress, Region
 from .search import FEASIBLE, Found, Search
 
-Progress = Callable[[str, float], None]
 ROUNDING = 1e-13
 MOST = 8  # springs tried when no number is given
 NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
@@ -66,23 +65,23 @@ def design(
         InputError: a bad option.  UnsupportedError: the mechanism has loops.
     """
     if springs is not None and springs < 1:
-        raise InputError(f"springs: must be at least 1, found {springs}")
+        raise InputError(Fault(("springs",), f"must be at least 1, found {springs}"))
     bare = mechanism if keep else mechanism.with_springs(())
-    judged = over_all_turns(bare) if unlimited else bare
     problem = Problem.of(
-        judged, span=span, pairs=pairs, radius=radius, shape=shape, regions=regions, objective=objective, joints=joints,
-        samples=samples, seed=seed,
-    )  # fmt: skip
-    gram = build(problem, progress)
-    options = _options(problem, span if pairs is None else None, springs, unlimited)
-    if gram.unbalanced <= ROUNDING * _weight(bare):
-        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, gravity loads no joint that counts")
-    useful = gram.useful
-    if not useful:
-        raise InfeasibleError("no spring on these pairs has any effect on any joint")
-    gram = gram.on(useful)
+        over_all_turns(bare) if unlimited else bare,
+        span=span,
+        pairs=pairs,
+        radius=radius,
+        shape=shape,
+        regions=regions,
+        objective=objective,
+        joints=joints,
+        samples=samples,
+        seed=seed,
+    )
+    gram = _worth_solving(build(problem, progress))
     search = Search(gram, seed, progress)
-    bound = search.bound(tuple(range(len(useful))))
+    bound = search.bound(tuple(range(len(gram.problem.pairs))))
     feasible = bound < FEASIBLE
     infeasible = None if feasible else _infeasible(gram, bound)
     if exact and infeasible is not None:
@@ -95,21 +94,20 @@ def design(
             f"springs on these pairs can balance exactly, but none were found with {found.count} or fewer: "
             f"the best leaves {found.value * gram.unbalanced:.3g} N m; allow more springs"
         )
-    value, floor, unit, set_ = found.value, bound if not feasible else 0.0, gram.unbalanced, found.springs
+    chosen, value, least, unit = found.springs, found.value, 0.0 if feasible else bound, gram.unbalanced
     if objective == "peak":
-        peak = Peak.of(gram)
-        floor, unit = (0.0 if feasible else peak.bound().value), peak.unbalanced
-        set_, value = (set_, value) if found.exact else peak.polish(set_)
+        chosen, value, least, unit = _lower_peak(gram, found, feasible)
+    averaged = gram.averaged and objective == "rms"
     return Design(
-        mechanism=replace(bare, springs=(*bare.springs, *_springs(gram.problem, set_, bare.springs))),
+        mechanism=replace(bare, springs=(*bare.springs, *_springs(gram.problem, chosen, bare.springs))),
         method="convex",
         objective=objective,
         residual=value * unit,
         unbalanced=unit,
-        bound=min(floor, value) * unit,  # both hold to rounding or the solver's tolerance; neither may contradict
-        averaged=gram.averaged and objective == "rms",
-        samples=None if gram.averaged and objective == "rms" else problem.samples or mechanism.workspace.samples,
-        free_parameters=options,
+        bound=min(least, value) * unit,  # both hold to rounding or the solver's tolerance; neither may contradict
+        averaged=averaged,
+        samples=None if averaged else problem.count,
+        free_parameters=_options(problem, span if pairs is None else None, springs, unlimited),
         exact_feasible=feasible,
         infeasible=infeasible,
         front=tuple(_row(gram, row) for row in rows),
@@ -121,10 +119,24 @@ def applies(mechanism: Mechanism) -> list[str]:
     return ["it has loops, and the closed-loop solver does not exist yet"] if mechanism.loops else []
 
 
-def _weight(mechanism: Mechanism) -> float:
-    """[N m] all the weight at the end of the reach: what rounding is a share of."""
+def _worth_solving(gram: Gram) -> Gram:
+    """The problem on those of its pairs that have an effect."""
+    mechanism = gram.problem.mechanism
     mass = sum(mass for _, mass, _ in lumped_masses(mechanism))
-    return mass * float(np.linalg.norm(mechanism.gravity)) * Mounts.of(mechanism).reach
+    weight = mass * float(np.linalg.norm(mechanism.gravity)) * Mounts.of(mechanism).reach
+    if gram.unbalanced <= ROUNDING * weight:
+        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, gravity loads no joint that counts")
+    if not gram.useful:
+        raise InfeasibleError("no spring on these pairs has any effect on a joint that counts")
+    return gram.on(gram.useful)
+
+
+def _lower_peak(gram: Gram, found: Found, feasible: bool) -> tuple[Springs, float, float, float]:
+    """For the peak objective: (springs, peak, its bound, unit [N m]), both as shares of the unit."""
+    peak = Peak.of(gram)
+    least = 0.0 if feasible else peak.bound().value
+    springs, value = (found.springs, found.value) if found.exact else peak.polish(found.springs)
+    return springs, value, least, peak.unbalanced
 
 
 def _choose(search: Search, springs: int | None, bound: float) -> Found:

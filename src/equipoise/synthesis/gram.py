@@ -8,7 +8,7 @@ by an orthogonal reduction of samples, their number no longer matters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,9 +22,8 @@ from ..energy.series import Series
 from ..kinematics import Poses, Tree, Velocities, sample
 from ..kinematics.sampling import whole_turns
 from ..rotation import skew
-from .problem import Pair, Problem
+from .problem import Pair, Problem, Progress
 
-Progress = Callable[[str, float], None]
 RANK = 1e-12  # singular values below this share of the largest are rounding
 _I, _J = np.triu_indices(7)
 _COLUMN = np.lexsort((_I, _J))  # columns of the upper triangle, as the cone solver stacks them
@@ -114,10 +113,10 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
     """By Parseval: the mean square of a Fourier series' derivative is the sum of |k_j c_k|^2."""
     mechanism = problem.mechanism
     tree = Tree.of(mechanism)
-    if not whole_turns(tree):
-        return None
     try:
         frames = Frames(tree)
+        if not whole_turns(tree, frames.denominators):
+            return None
         load = Series.sum([gravity_series(frames), *(spring_series(frames, s) for s in mechanism.springs)])
         forms = [_form(frames, problem, pair) for pair in problem.pairs]
     except NoFourierForm:
@@ -145,7 +144,7 @@ def _form(frames: Frames, problem: Problem, pair: Pair) -> Series:
 
 
 def _samples(problem: Problem, progress: Progress | None) -> tuple[Array, Array]:
-    count = problem.samples or problem.mechanism.workspace.samples
+    count = problem.count
     width = TRI * len(problem.pairs) + 1
     R, store, done = np.zeros((0, width)), np.zeros((len(problem.pairs), 7, 7)), 0
     for torque, load, energy in torque_rows(problem, sample(Tree.of(problem.mechanism), count, problem.seed)):

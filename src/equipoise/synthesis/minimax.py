@@ -42,11 +42,10 @@ class Peak:
     def of(gram: Gram) -> Peak:
         """The rows over random poses inside the joint ranges."""
         problem = gram.problem
-        count = problem.samples or problem.mechanism.workspace.samples
         rows = svec(gram.Q).transpose(1, 0, 2).reshape(len(gram.d), -1)
         to_w = np.linalg.pinv(rows)
         L, load = [], []
-        for T, torque, _ in torque_rows(problem, sample(Tree.of(problem.mechanism), count, problem.seed)):
+        for T, torque, _ in torque_rows(problem, sample(Tree.of(problem.mechanism), problem.count, problem.seed)):
             L.append((T @ to_w * problem.weights[:, None]).reshape(-1, len(rows)))
             load.append((torque * problem.weights).ravel())
         every = np.concatenate(load)

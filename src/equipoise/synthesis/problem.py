@@ -5,7 +5,7 @@ Building a problem is separate from solving it, so that it can be looked at and 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -19,6 +19,7 @@ from ..mechanism import WORLD, Mechanism
 from .mounts import Mounts
 
 Pair = tuple[str, str]
+Progress = Callable[[str, float], None]  # what is being done, and the share of it that is done
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
 
@@ -122,6 +123,11 @@ class Problem:
         every = {name: given.get(name) or make(radius or mounts.default_radius(name)) for name in names}
         counted = None if joints is None else _coordinates(mechanism, joints)
         return Problem(mechanism, chosen, every, objective, counted, samples, seed)
+
+    @property
+    def count(self) -> int:
+        """The number of random poses where averages are not exact."""
+        return self.samples or self.mechanism.workspace.samples
 
     def on(self, pairs: Iterable[Pair]) -> Problem:
         """The same problem on other pairs (bodies that have a region)."""

@@ -6,7 +6,7 @@ many random starts are polished under the true constraints.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import combinations, combinations_with_replacement, islice
 from math import comb
@@ -16,8 +16,8 @@ import numpy as np
 from .bound import Bound, least_rms
 from .gram import Gram
 from .polish import STALL, Springs, best_stiffness, polish, project
+from .problem import Progress
 
-Progress = Callable[[str, float], None]
 EXACT = 1e-11  # share of the unbalanced torque that counts as exact here; the certificate has the last word
 FEASIBLE = 1e-6  # a convex bound below this share is zero within the solver's tolerance
 EXHAUSTIVE = 500  # sets of pairs up to which every one gets its bound
