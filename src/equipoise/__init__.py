@@ -1,9 +1,11 @@
 """equipoise designs the springs that make a robot weightless, and proves it.
 
-import equipoise as eq
+The names below are the whole public interface::
 
-design = eq.design(eq.load("ur5.urdf"), span=3)
-print(design.balance.exact, design.balance.residual.max)
+    import equipoise as eq
+
+    design = eq.design(eq.load("ur5.urdf"), span=3)
+    print(design.balance.exact, design.balance.residual.max)
 """
 
 from __future__ import annotations

@@ -28,8 +28,10 @@ class Certificate:
 
     Attributes:
         kind: "fourier", a proof over all configurations, or "sampled", with `reason` why there is no proof.
-        terms: of the Fourier form; max_coefficient: its largest non-constant coefficient [J].
         samples: random poses used for everything that is not the proof.
+        terms: how many the Fourier form has.
+        max_coefficient: its largest that varies [J].
+        reason: why there is no proof.
     """
 
     kind: Literal["fourier", "sampled"]
@@ -61,10 +63,16 @@ class Balance:
 
     Attributes:
         exact: the certificate proves that the energy is constant, to 1e-10 of what gravity has to be balanced.
-        unbalanced, residual: torque of gravity alone, and of gravity and springs.
+        unbalanced: torque of gravity alone.
+        residual: torque of gravity and springs.
         bound: (n,) proved bound of the residual torque [N m or N], None where there is no Fourier form.
-        constant: mean of the total energy over the poses [J]; gravity, springs, total: its parts' [min, max].
-        worst_configuration, worst_torque: (n,) the pose of the largest residual torque, and the torque there.
+        constant: mean of the total energy over the poses [J].
+        gravity: smallest and largest gravity energy [J].
+        springs: the same of all springs together.
+        total: the same of both together.
+        worst_configuration: (n,) the pose of the largest residual torque [rad or m].
+        worst_torque: (n,) the torque there [N m or N].
+        use: of each spring, how long it gets and how hard it pulls.
     """
 
     mechanism: Mechanism

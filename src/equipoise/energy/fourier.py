@@ -170,7 +170,8 @@ class FourierEnergy:
     """The energy of a mechanism as ``U(q) = Re sum_t c_t q^degree_t exp(i frequency_t . q)``.
 
     Attributes:
-        frequency, degree: (T, n); the constant term is all zero.
+        frequency: (T, n) real; zero in the constant term, and so is
+        degree: (T, n) whole numbers, of the sliding coordinates only.
         c: (T,) complex [J, or J/m^degree].
         scale: [J] the size of what has to be balanced: what each mass alone, or where gravity does no work each spring
             alone, makes the energy vary by, summed before anything cancels; 0 where that is nothing but rounding.

@@ -26,8 +26,11 @@ class State:
     """Everything about a batch of N configurations.
 
     Attributes:
-        gravity: (N,) [J];  springs: (N, springs) [J];  length: (N, springs) [m].
-        gravity_torque, spring_torque: (N, n) [N m or N].
+        gravity: (N,) energy [J].
+        springs: (N, springs) energy of each [J].
+        length: (N, springs) [m].
+        gravity_torque: (N, n) [N m or N].
+        spring_torque: (N, n) [N m or N].
     """
 
     gravity: Array

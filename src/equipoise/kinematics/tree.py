@@ -80,8 +80,10 @@ class Tree:
     Attributes:
         names: body names, the world first; `index` maps a name to its number.
         links: one per body but the world, parents before children.
-        C, s0: elementary joint values ``s = C q + s0``; C is (motions, n).
-        lower, upper: range of each motion, -inf and inf where there is none.
+        C: (motions, n) elementary joint values are ``s = C q + s0``.
+        s0: (motions,) [rad or m].
+        lower: (motions,) lower end of the range [rad or m], -inf where there is none.
+        upper: (motions,) upper end, inf where there is none.
         rotates: (motions,) whether it is a rotation.
     """
 

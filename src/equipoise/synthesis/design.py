@@ -57,10 +57,17 @@ class Design:
 
     Attributes:
         mechanism: with the springs.
-        objective: what was minimised; residual and unbalanced [N m] are in its terms, and so is
+        method: its name in `METHODS`.
+        objective: what was minimised; the next three are in its terms.
+        residual: [N m] torque that is left.
+        unbalanced: [N m] torque without the springs.
         bound: [N m] no springs on the allowed pairs and regions can leave less; None for methods without one.
-        averaged: whether these are exact averages over all configurations, or over `samples` random poses.
+        averaged: whether these are exact averages over all configurations, or over random poses.
+        samples: the number of random poses, None when the averages are exact.
+        free_parameters: the options the method was called with.
         exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.
+        infeasible: the proof that they cannot.
+        front: the best design for each number of springs, when it was asked for.
     """
 
     mechanism: Mechanism
