@@ -42,7 +42,8 @@ def _inline(self, node):
 
 def _block(self, node):
     # aligned rows are a construct of their own to the converter, so nothing is wrapped around them
-    self.body.append(f'<div class="formula" title="{escape(node.astext())}">{convert(node.astext(), display="block")}</div>')
+    formula = convert(node.astext(), display="block")
+    self.body.append(f'<div class="formula" title="{escape(node.astext())}">{formula}</div>')
     raise nodes.SkipNode
 
 

@@ -168,7 +168,8 @@ def design(
     Example: [bold]equipoise design ur5.urdf --span 3 --radius 150mm --springs 3 -o balanced.yaml --plot ur5.svg[/bold]
     """
     from . import options
-    from .io.files import check_writable
+    from .io import check_savable, save
+    from .report.figure import check_drawable, save_figure
     from .synthesis import METHODS
     from .synthesis import design as run
 
@@ -191,21 +192,21 @@ def design(
     if method in METHODS:
         given |= options.settings(set_ or [], METHODS[method].parameters)
     mechanism = _load(file)
-    for path in filter(None, (output, plot)):
-        check_writable(path)  # before the work, not after it
+    if output:
+        check_savable(output)  # before the work, not after it
+    if plot:
+        check_drawable(plot)
     if mechanism.springs and not keep:
         _say(f"note: the file's {len(mechanism.springs)} springs are replaced; --keep keeps them")
     with _progress("designing") as report:
         found = run(mechanism, method, progress=report, **given)
         report("judging the design", 0.0)
         balance = found.balance
+        if output:
+            save(found.mechanism, output)
         if plot:
             report("drawing", 0.0)
-            _figure(found.mechanism, plot, balance)
-    if output:
-        from .io import save
-
-        save(found.mechanism, output)
+            save_figure(found.mechanism, plot, balance=balance)
     if json:
         _print_json(found.to_dict())
     else:
@@ -265,12 +266,6 @@ def _load(file: Path) -> Mechanism:
 
     with _warnings():
         return load(file)
-
-
-def _figure(mechanism: Mechanism, path: Path, balance: Any) -> None:
-    from .report.figure import save_figure
-
-    save_figure(mechanism, path, balance=balance)
 
 
 @contextmanager

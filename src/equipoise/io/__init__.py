@@ -41,13 +41,25 @@ def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
     Raises:
         InputError: the suffix is not .yaml or .yml, or the file cannot be written.
     """
-    if Path(path).suffix.lower() not in YAML_SUFFIXES:
-        found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
-        raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
     from . import yaml
     from .files import write_text
 
+    check_savable(path)
     write_text(path, yaml.to_text(mechanism))
+
+
+def check_savable(path: str | os.PathLike[str]) -> None:
+    """Whether `save` could write there, asked before long work.
+
+    Raises:
+        InputError: as `save` does.
+    """
+    from .files import check_writable
+
+    if Path(path).suffix.lower() not in YAML_SUFFIXES:
+        found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
+        raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
+    check_writable(path)
 
 
 def _suffix(path: str | os.PathLike[str]) -> str:

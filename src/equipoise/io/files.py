@@ -1,4 +1,4 @@
-"""Reading and writing text files, with errors that say what to change."""
+"""Reading and writing files whole, with errors that say what to change."""
 
 from __future__ import annotations
 
@@ -38,7 +38,16 @@ def read_text(path: str | os.PathLike[str]) -> str:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a UTF-8 file whole or not at all: into a temporary file beside it, which then takes its place.
+    """Write a UTF-8 file whole or not at all; see `write_bytes`."""
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:  # half of a surrogate pair
+        raise _fault(os.fspath(path), f"cannot be written: {error.reason}") from error
+    write_bytes(path, data)
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write a file whole or not at all: into a temporary file beside it, which then takes its place.
 
     A file that exists keeps its permissions, a symbolic link stays one, and a device such as /dev/stdout is written to.
 
@@ -51,10 +60,10 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         if target.is_dir():
             raise IsADirectoryError
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8", newline="\n")
+            target.write_bytes(data)
         else:
-            _replace(target, text)
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the name, a text that UTF-8 cannot hold
+            _replace(target, data)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise _fault(name, f"cannot be written: {_reason(error)}") from error
 
 
@@ -73,12 +82,12 @@ def check_writable(path: str | os.PathLike[str]) -> None:
         raise _fault(os.fspath(path), "cannot be written: permission denied")
 
 
-def _replace(target: Path, text: str) -> None:
+def _replace(target: Path, data: bytes) -> None:
     mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
     handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".tmp", dir=target.parent)
     try:
-        with open(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        with open(handle, "wb") as stream:
+            stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
         os.chmod(temporary, mode)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from ..arrays import Array
 from ..balance import Balance, check
 from ..energy.potential import Potential
 from ..errors import Fault, InputError
+from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree
 from ..mechanism import Mechanism
 from . import arm, loads, style
@@ -46,17 +48,23 @@ def save_figure(
         InputError: another suffix, or the folder is missing or cannot be written to.
         UnsupportedError: the mechanism has loops.
     """
-    target = Path(path)
-    suffix = target.suffix.lower()
-    if suffix not in METADATA:
-        fault = Fault((), f"a figure cannot be written as '{target.suffix}'", tuple(METADATA), file=str(target))
-        raise InputError(fault)
-    if not target.absolute().parent.is_dir():
-        raise _unwritten(target, f"there is no folder '{target.parent}'")
-    if target.is_dir():
-        raise _unwritten(target, "it is a folder")
-    data = _render(mechanism, check(mechanism) if balance is None else balance, title, suffix)
-    _write(target, data)
+    check_drawable(path)
+    suffix = Path(path).suffix.lower()
+    write_bytes(path, _render(mechanism, check(mechanism) if balance is None else balance, title, suffix))
+
+
+def check_drawable(path: str | os.PathLike[str]) -> None:
+    """Whether `save_figure` could write there, asked before long work.
+
+    Raises:
+        InputError: as `save_figure` does; also when matplotlib is not installed.
+    """
+    if Path(path).suffix.lower() not in METADATA:
+        found = f"a figure cannot be written as '{Path(path).suffix}'"
+        raise InputError(Fault((), found, tuple(METADATA), file=os.fspath(path)))
+    if find_spec("matplotlib") is None:
+        raise InputError("figures need matplotlib: pip install 'equipoise[report]'")
+    check_writable(path)
 
 
 def _render(mechanism: Mechanism, balance: Balance, title: str | None, suffix: str) -> bytes:
@@ -179,23 +187,3 @@ def _torque(figure: Any, balance: Balance) -> None:
     elif len(rows) < len(names):
         text += "\nwithout load: " + style.clean(", ".join(name for i, name in enumerate(names) if i not in rows), 50)
     figure.text(0.625, 0.075, text, va="top", fontsize=11, color=style.FAINT, parse_math=False)
-
-
-def _write(target: Path, data: bytes) -> None:
-    """Into a temporary file beside the target, which then takes its place."""
-    target = Path(os.path.realpath(target))
-    temporary = target.with_name(f".{target.name[:100]}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "xb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, target)
-    except OSError as error:
-        raise _unwritten(target, (error.strerror or str(error)).lower()) from error
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _unwritten(target: Path, reason: str) -> InputError:
-    return InputError(Fault((), f"cannot be written: {reason}", file=str(target)))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Integers
 from ..balance import Balance
 from . import style
 
@@ -18,7 +18,7 @@ LOG = 0.02  # a residual below this share of the unbalanced torque needs a logar
 UNITS = {"rad": ("torque", "N m"), "m": ("force", "N")}
 
 
-def shown(balance: Balance) -> dict[str, Array]:
+def shown(balance: Balance) -> dict[str, Integers]:
     """Unit "rad" or "m" -> numbers of the coordinates to show, in their order, at most `MOST` in all."""
     units = np.array(balance.mechanism.coordinate_units)
     share = np.zeros(len(units))
@@ -26,7 +26,7 @@ def shown(balance: Balance) -> dict[str, Array]:
         largest = balance.unbalanced.max[units == unit].max(initial=0)
         share[units == unit] = balance.unbalanced.max[units == unit] / largest if largest > 0 else 0.0
     keep = np.sort(np.argsort(-share, kind="stable")[:MOST])
-    groups = {unit: keep[units[keep] == unit] for unit in UNITS if (units[keep] == unit).any()}
+    groups: dict[str, Integers] = {unit: keep[units[keep] == unit] for unit in UNITS if (units[keep] == unit).any()}
     loaded = {unit: rows for unit, rows in groups.items() if _top(balance, rows) > TINY}
     return loaded or groups
 
@@ -39,7 +39,7 @@ def below(balance: Balance) -> float | None:
     return max(TINY, 10.0 ** np.ceil(np.log10(largest))) if largest > 0 else TINY
 
 
-def draw(axes: Any, balance: Balance, unit: str, rows: Array) -> None:
+def draw(axes: Any, balance: Balance, unit: str, rows: Integers) -> None:
     """Bars of coordinates `rows`, all of `unit`: solid up to the rms, pale up to the largest."""
     what, symbol = UNITS[unit]
     springs, limit = bool(balance.mechanism.springs), below(balance)
@@ -111,7 +111,7 @@ def _label(top: float) -> str:
     return style.number(top) if top > TINY else "0"
 
 
-def _top(balance: Balance, rows: Array) -> float:
+def _top(balance: Balance, rows: Integers) -> float:
     residual = balance.residual.max[rows] if balance.mechanism.springs else np.zeros(1)
     return max(float(balance.unbalanced.max[rows].max()), float(residual.max()))
 
