@@ -9,10 +9,12 @@ import pytest
 from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
-from equipoise.errors import InputError
+from equipoise.balance import check
+from equipoise.errors import InputError, UnsupportedError
 from equipoise.io import files
 from equipoise.kinematics import Tree
-from equipoise.report.arm import zigzag
+from equipoise.report import loads, style
+from equipoise.report.arm import window, zigzag
 from equipoise.report.figure import save_figure
 from equipoise.report.poses import choose
 from equipoise.report.skeleton import Skeleton
@@ -142,3 +144,123 @@ def test_nothing_is_left_behind_when_writing_fails(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="no space left"):
         save_figure(arm(), tmp_path / "arm.svg")
     assert not list(tmp_path.iterdir())
+
+
+# The details ----------------------------------------------------------------------------------------------------------
+
+PENDULUM = eq.Mechanism(
+    "one-link arm",
+    bodies=(eq.Body("arm", 2.0, (0.3, 0, 0)),),
+    joints=(eq.Joint("shoulder", "revolute", "world", "arm", axis=(0, -1, 0)),),
+    springs=(eq.Spring("spring", "world", (0, 0, 0.2), "arm", (0.15, 0, 0), 196.2),),
+)
+
+
+def pendulum(share: float) -> eq.Mechanism:
+    """The pendulum with this share of the stiffness that balances it."""
+    return PENDULUM.with_springs([replace(PENDULUM.springs[0], stiffness=share * 196.2)])
+
+
+def chain(axes) -> eq.Mechanism:
+    """Links of 0.3 m that turn about these axes."""
+    names = ["world", *(f"link {i}" for i in range(len(axes)))]
+    return eq.Mechanism(
+        "chain",
+        bodies=tuple(eq.Body(name, 1.0, (0.15, 0, 0)) for name in names[1:]),
+        joints=tuple(
+            eq.Joint(f"joint {i}", "revolute", names[i], names[i + 1], ((0.3 if i else 0.0), 0, 0), axis=axis)
+            for i, axis in enumerate(axes)
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("share", "verdict", "logarithmic"),
+    [(1, "EXACT", False), (0.9, "residual 10.0 % of", False), (1.001, "residual 0.100 % of", True)],
+)
+def test_a_small_residual_gets_a_logarithmic_axis_and_none_a_word(tmp_path, share, verdict, logarithmic):
+    save_figure(pendulum(share), tmp_path / "arm.svg")
+    shown = texts(tmp_path / "arm.svg")
+    assert verdict in shown
+    assert ("logarithmic" in shown) == logarithmic
+    assert ("below 1e-9 N m" in shown) == (share == 1)
+
+
+def test_the_given_balance_and_title_are_used(tmp_path, monkeypatch):
+    balance = eq.check(PENDULUM)
+    monkeypatch.setattr("equipoise.report.figure.check", None)
+    save_figure(PENDULUM, tmp_path / "arm.svg", balance=balance, title="Figure 1 <&> $x$")
+    assert "Figure 1 <&> $x$" in texts(tmp_path / "arm.svg")
+    assert "one-link arm" not in texts(tmp_path / "arm.svg")
+
+
+def test_of_many_coordinates_and_springs_the_first_are_shown(tmp_path):
+    springs = [replace(SPRINGS[0], name=f"s{i}", body_b="link 3") for i in range(11)]
+    many = chain([(0, 1, 0), (0, 0, 1)] * 7).with_springs(springs)
+    balance = check(many, samples=50, max_terms=1)
+    save_figure(many, tmp_path / "many.svg", balance=balance)
+    shown = texts(tmp_path / "many.svg").splitlines()
+    assert "and 4 more springs" in shown
+    rows = loads.shown(balance)["rad"]
+    assert len(rows) == loads.MOST
+    assert [i for i in range(14) if f"joint {i}" in shown] == rows.tolist()
+    hidden = np.setdiff1d(np.arange(14), rows)
+    assert balance.unbalanced.max[hidden].max() <= balance.unbalanced.max[rows].min()
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        eq.Mechanism("welded", bodies=(eq.Body("a", 1.0),), joints=(eq.Joint("j", "fixed", "world", "a"),)),
+        replace(PENDULUM, gravity=(0.0, 0.0, 0.0)),
+        replace(PENDULUM, name="机器人 \x01 $\\frac{$"),
+        PENDULUM.with_springs([replace(PENDULUM.springs[0], p_a=(0, 0, 0), p_b=(0, 0, 0))]),  # of no length
+    ],
+    ids=["nothing moves", "no gravity", "a name that no font has", "a spring of no length"],
+)
+def test_odd_mechanisms_are_drawn(tmp_path, mechanism):
+    save_figure(mechanism, tmp_path / "odd.svg")
+    assert texts(tmp_path / "odd.svg")
+
+
+def test_loops_are_refused(tmp_path):
+    closed = replace(PENDULUM, loops=(eq.Loop("world", (0, 0, 0), "arm", (0, 0, 0)),))
+    with pytest.raises(UnsupportedError, match="loop"):
+        save_figure(closed, tmp_path / "loop.svg")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "planar"),
+    [
+        (PENDULUM, True),
+        (chain([(0, 1, 0), (0, -2, 0)]), True),
+        (chain([(0, 0, 1), (0, 1, 0)]), False),
+        (chain([(0, 0, 1), (0, 0, 1)]), False),  # gravity is normal to the plane of motion
+    ],
+)
+def test_the_view_shows_everything_and_is_a_rotation(mechanism, planar):
+    skeleton = Skeleton.of(mechanism)
+    view, q = choose(mechanism, skeleton)
+    assert view.planar is planar
+    axes = np.array([view.right, view.up, view.normal])
+    assert axes @ axes.T == pytest.approx(np.eye(3))
+    assert np.linalg.det(axes) == pytest.approx(1)
+    placed = Tree.of(mechanism).poses(q)
+    (left, right), (bottom, top) = window(skeleton, placed, view, aspect=1.5)
+    assert (right - left) / (top - bottom) == pytest.approx(1.5)
+    x, y = view.flat(skeleton.points(placed)).reshape(-1, 2).T
+    assert left < x.min() < x.max() < right
+    assert bottom < y.min() < y.max() < top
+
+
+def test_bars_lead_from_joint_to_joint_to_the_payload():
+    mechanism = chain([(0, 1, 0)] * 2).with_masses([eq.PointMass("p", "link 1", 1.0, (0.5, 0, 0))])
+    placed = Tree.of(mechanism).poses(np.zeros((1, 2)))
+    ends = [[end.at(placed)[0, 0] for end in (bar.a, bar.b)] for bar in Skeleton.of(mechanism).bars]
+    assert np.array(ends) == pytest.approx(np.array([[0, 0.3], [0.3, 0.8]]))
+
+
+def test_numbers_are_short():
+    shown = [style.number(value) for value in (0.0, 59.34, 0.1738, 1401.4, 2e-5, 3e6)]
+    assert shown == ["0", "59.3", "0.174", "1401", "2.0e-05", "3.0e+06"]

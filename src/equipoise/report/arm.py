@@ -112,9 +112,10 @@ class _Pen:
         path = zigzag(flat[0], flat[1], 0.018 * self.size, 0.017 * self.size)
         self.line(path, "white", 4.0, order, alpha=0.85)
         self.line(path, colour, 2.0, order + 0.001)
-        for end in flat:
+        for point, end in zip((p, q), flat, strict=True):
             look = {"marker": "o", "markersize": 6.0, "markerfacecolor": colour, "markeredgecolor": "white"}
-            self.line(end[None], colour, 0, order + 0.002, markeredgewidth=0.9, **look)
+            top = max(order, self.order(point, 2.0)) + 0.002  # over its own line, and over the body it is on
+            self.line(end[None], colour, 0, top, markeredgewidth=0.9, **look)
 
     def support(self) -> None:
         """The hatched triangle of a planar mechanism under each place where it stands."""

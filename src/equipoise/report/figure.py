@@ -29,7 +29,7 @@ METADATA: dict[str, dict[str, None]] = {
     ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
 SIZE, DPI = (14.0, 7.0), 150  # [in], 2100 x 1050 pixels
-LISTED = 10  # springs in the legend
+LISTED = 8  # lines in the legend
 
 
 def save_figure(
@@ -85,7 +85,7 @@ def _render(mechanism: Mechanism, balance: Balance, title: str | None, suffix: s
 
 def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:
     count = len(mechanism.springs)
-    name = style.clean(mechanism.name if title is None else title, 60)
+    name = style.clean(mechanism.name if title is None else title, 46)
     springs = "no springs" if not count else "1 spring" if count == 1 else f"{count} springs"
     verdict, small = _verdict(balance)
     colour = style.FAINT if not count else style.AFTER if loads.below(balance) else style.SPRINGS[0]
@@ -97,10 +97,12 @@ def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | N
 
 def _verdict(balance: Balance) -> tuple[str, str]:
     poses, limit = f"{balance.certificate.samples} random poses", loads.below(balance)
+    if not balance.mechanism.coordinates:
+        return "nothing moves", ""
     if not balance.mechanism.springs:
         return "gravity alone", f"over {poses}"
     if balance.exact:
-        return "EXACT", f"proved for every pose; residual below {style.power(limit or 0.0)} N m"
+        return "EXACT", f"proved for every pose; below {style.power(limit or 0.0)} N m over {poses}"
     if limit is not None:
         return f"residual below {style.power(limit)} N m", f"over {poses}"
     if not np.isfinite(balance.relative):
@@ -144,27 +146,24 @@ def _legend(figure: Any, mechanism: Mechanism) -> None:
     if not springs:
         return
     axes = figure.add_axes((0.025, 0.03, 0.57, 0.2))
-    axes.set(xlim=(0, 100), ylim=(5, 0))
+    lines = max(5, min(len(springs), LISTED))
+    axes.set(xlim=(0, 100), ylim=(lines, 0))
     axes.set_axis_off()
-    wide = len(springs) <= 5
-    for i, spring in enumerate(springs[:LISTED]):
-        x, y = (0.0, i + 0.5) if wide else (52.0 * (i // 5), i % 5 + 0.5)
-        if i == LISTED - 1 and len(springs) > LISTED:
-            axes.text(x, y, f"and {len(springs) - i} more", va="center", color=style.FAINT)
-            break
-        path = arm.zigzag(np.array([x, y]), np.array([x + 9, y]), 0.26)
+    size = 12 if lines == 5 else 10
+    named = springs if len(springs) <= LISTED else springs[: LISTED - 1]
+    for i, spring in enumerate(named):
+        y = i + 0.5
+        path = arm.zigzag(np.array([0.0, y]), np.array([9.0, y]), 0.26)
         axes.plot(*path.T, color=style.spring_colour(i), linewidth=2.0, solid_joinstyle="round")
-        most = 26 if wide else 14
-        pair = f"{style.clean(spring.body_a, most)} – {style.clean(spring.body_b, most)}"
         stiffness = f"{f'{spring.stiffness:#.4g}'.rstrip('.')} N/m"
-        size = 12 if wide else 10
-        for at, text, colour in (
-            (11, style.clean(spring.name, 22 if wide else 12), style.INK),
-            (44 if wide else 26, stiffness, style.INK),
-            (47 if wide else 27.5, pair, style.FAINT),
-        ):
-            align = "right" if text is stiffness else "left"
-            axes.text(x + at, y, text, va="center", ha=align, color=colour, fontsize=size, parse_math=False)
+        pair = f"{style.clean(spring.body_a, 26)} – {style.clean(spring.body_b, 26)}"
+        look = {"va": "center", "fontsize": size, "parse_math": False}
+        axes.text(11, y, style.clean(spring.name, 22), color=style.INK, **look)
+        axes.text(44, y, stiffness, ha="right", color=style.INK, **look)
+        axes.text(47, y, pair, color=style.FAINT, **look)
+    if len(named) < len(springs):
+        text = f"and {len(springs) - len(named)} more springs"
+        axes.text(11, lines - 0.5, text, va="center", fontsize=size, color=style.FAINT)
 
 
 def _torque(figure: Any, balance: Balance) -> None:
@@ -173,7 +172,7 @@ def _torque(figure: Any, balance: Balance) -> None:
         return
     names = balance.mechanism.coordinates
     rows = np.concatenate(list(groups.values()))
-    longest = max(len(style.clean(names[row], loads.NAME)) for row in rows)
+    longest = max(4, *(len(style.clean(names[row], loads.NAME)) for row in rows))
     left, right, bottom, top, gap = 0.625 + 0.0068 * longest, 0.97, 0.185, 0.79, 0.13
     loads.key(figure, balance, 0.625, 0.845)
     row = min((top - bottom - gap * (len(groups) - 1)) / len(rows), 0.17)
@@ -186,4 +185,4 @@ def _torque(figure: Any, balance: Balance) -> None:
         text += f"\nthe {loads.MOST} of {len(names)} coordinates with the largest unbalanced torque"
     elif len(rows) < len(names):
         text += "\nwithout load: " + style.clean(", ".join(name for i, name in enumerate(names) if i not in rows), 50)
-    figure.text(0.625, 0.075, text, va="top", fontsize=11, color=style.FAINT, parse_math=False)
+    figure.text(0.625, top + gap - 0.11, text, va="top", fontsize=11, color=style.FAINT, parse_math=False)

@@ -17,6 +17,7 @@ CANDIDATES = 600  # random poses to choose from
 TURNED = np.deg2rad(28)  # how far a spatial arm is turned out of the picture plane
 ELEVATION = np.deg2rad(16)
 FEW = 12  # with more coordinates than these, poses half way to the neutral one look less contorted
+HALF = 0.5  # of the heaviest pose's load: what the second pose is to have, so that it is not a trivial one
 PARALLEL = 1e-6
 
 
@@ -56,22 +57,23 @@ def choose(mechanism: Mechanism, skeleton: Skeleton) -> tuple[View, Array]:
     torque = np.abs(Potential(mechanism)(q).gravity_torque)
     heavy = (torque / np.maximum(torque.max(axis=0), 1e-9)).mean(axis=1) if tree.n else np.zeros(len(q))
     heavy /= max(float(heavy.max()), 1e-9)
-    marks = np.concatenate([corners, skeleton.middles(poses)], axis=1)  # what should not lie on top of each other
+    ends = skeleton.ends(poses)
+    marks = np.concatenate([corners, ends.mean(axis=2), ends[:, :, 0], ends[:, :, 1]], axis=1)  # to be seen apart
     centre = _centre(mechanism, tree, poses) - base
     raised = np.clip(centre @ vertical / extent, None, 0.3)
     normal = _plane(mechanism, tree, poses, vertical)
     view = None if normal is None else _straight_on(normal, vertical)
     side = 0.0 if view is None else 0.3 * np.sign(np.round(centre @ view.right, 9))
-    first = int(np.argmax(2 * heavy + side + 2 * _spread(marks) / extent + raised - 2 * below))
+    first = int(np.argmax(3 * heavy + side + 2 * _spread(marks) / extent + raised - 2 * below))
     if view is None:
         view = _turned(centre[first], vertical)
 
     flat = view.flat(points)
     both = np.concatenate([np.broadcast_to(flat[first], flat.shape), flat], axis=1)
     moved = np.linalg.norm(flat - flat[first], axis=2).mean(axis=1) / extent
-    springs = _shortest(view.flat(skeleton.ends(poses))) / extent
-    score = 2 * np.clip(moved, 0, 0.3) + 5 * _spread(view.flat(marks)) / extent + 3 * np.clip(springs, 0, 0.1) + raised
-    score -= np.ptp(both, axis=1).max(axis=1) / extent + 0.3 * heavy + 2 * below
+    springs = _shortest(view.flat(ends)) / extent
+    score = 2 * np.clip(moved, 0, 0.3) + 5 * _spread(view.flat(marks)) / extent + 3 * np.clip(springs, 0, 0.2) + raised
+    score -= np.ptp(both, axis=1).max(axis=1) / extent + np.abs(heavy - HALF) + 2 * below
     return view, q[[first, int(np.argmax(score))]]
 
 

@@ -110,10 +110,6 @@ class Skeleton:
             return np.zeros((len(poses.p), 0, 2, 3))
         return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, b in self.springs], axis=1)
 
-    def middles(self, poses: Poses) -> Array:
-        """(N, springs, 3) the middles of the springs."""
-        return self.ends(poses).mean(axis=2)
-
 
 def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
     origin, bars = np.zeros(3), []
