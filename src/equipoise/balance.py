@@ -12,7 +12,8 @@ from typing import Any, Literal
 import numpy as np
 
 from .arrays import Array
-from .energy.fourier import EXACT, MAX_TERMS, FourierEnergy, NoFourierForm
+from .energy.fourier import EXACT, FourierEnergy
+from .energy.frames import MAX_TERMS, NoFourierForm
 from .energy.peak import climb
 from .energy.potential import Potential, State
 from .errors import InputError

@@ -5,23 +5,16 @@ Exit codes: 0 good, 1 the answer is "no" (not balanced, infeasible), 2 bad input
 
 from __future__ import annotations
 
-import json as json_module
 import os
 import sys
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from . import terminal
 from ._version import __version__
-from .errors import EquipoiseError, EquipoiseWarning, InputError
-
-if TYPE_CHECKING:
-    from .mechanism import Mechanism
-    from .synthesis.problem import Progress
+from .errors import EquipoiseError, InputError
 
 app = typer.Typer(
     name="equipoise",
@@ -87,18 +80,18 @@ def check(
     from .balance import check as judge
 
     share, torque = options.tolerance(tolerance)
-    mechanism = _load(file)
-    with _progress("judging") as report:
+    mechanism = terminal.load(file)
+    with terminal.progress_bar("judging") as report:
         report("judging the balance", 0.0)
         balance = judge(mechanism, samples=samples, seed=seed)
     good = balance.balanced(share or 0.0, torque)
     if json:
-        _print_json(balance.to_dict())
+        terminal.print_json(balance.to_dict())
     else:
         from .report.text import balance_lines
 
         answer = "" if balance.exact else f"{'within' if good else 'not within'} the tolerance of {tolerance}"
-        _print(balance_lines(balance, answer))
+        terminal.show(balance_lines(balance, answer))
     raise typer.Exit(0 if good else 1)
 
 
@@ -110,7 +103,7 @@ def methods(file: File, json: Json = False) -> None:
     """
     from .synthesis import METHODS
 
-    mechanism = _load(file)
+    mechanism = terminal.load(file)
     if json:
         rows = [
             {
@@ -123,11 +116,11 @@ def methods(file: File, json: Json = False) -> None:
             }
             for m in METHODS.values()
         ]
-        _print_json(rows)
+        terminal.print_json(rows)
     else:
         from .report.text import methods_table
 
-        _print(iter([methods_table(mechanism)]))
+        terminal.show(iter([methods_table(mechanism)]))
 
 
 @app.command()
@@ -191,14 +184,14 @@ def design(
     }
     if method in METHODS:
         given |= options.settings(set_ or [], METHODS[method].parameters)
-    mechanism = _load(file)
+    mechanism = terminal.load(file)
     if output:
         check_savable(output)  # before the work, not after it
     if plot:
         check_drawable(plot)
     if mechanism.springs and not keep:
-        _say(f"note: the file's {len(mechanism.springs)} springs are replaced; --keep keeps them")
-    with _progress("designing") as report:
+        terminal.say(f"note: the file's {len(mechanism.springs)} springs are replaced; --keep keeps them")
+    with terminal.progress_bar("designing") as report:
         found = run(mechanism, method, progress=report, **given)
         report("judging the design", 0.0)
         balance = found.balance
@@ -208,13 +201,13 @@ def design(
             report("drawing", 0.0)
             save_figure(found.mechanism, plot, balance=balance)
     if json:
-        _print_json(found.to_dict())
+        terminal.print_json(found.to_dict())
     else:
         from .report.text import design_lines
 
-        _print(design_lines(found))
+        terminal.show(design_lines(found))
     for path in filter(None, (output, plot)):
-        _say(f"wrote {path}")
+        terminal.say(f"wrote {path}")
 
 
 @app.command()
@@ -235,13 +228,13 @@ def export(
 
     if to not in WRITERS:
         raise InputError(Fault(("--to",), f"unknown format {nearest(to, WRITERS)}", tuple(WRITERS)))
-    with _warnings():
-        text = import_module(f".io.{to}", __package__).to_text(_load(file))
+    with terminal.shown_warnings():
+        text = import_module(f".io.{to}", __package__).to_text(terminal.load(file))
     if output is None:
         typer.echo(text, nl=False)
     else:
         write_text(output, text)
-        _say(f"wrote {output}")
+        terminal.say(f"wrote {output}")
 
 
 @app.command()
@@ -256,55 +249,6 @@ def demo(
     """
     from .demo import run
 
-    with _warnings(), _progress("demo") as report:
+    with terminal.shown_warnings(), terminal.progress_bar("demo") as report:
         lines = run(folder, report)
-    _print(iter(lines))
-
-
-def _load(file: Path) -> Mechanism:
-    from .io import load
-
-    with _warnings():
-        return load(file)
-
-
-@contextmanager
-def _warnings() -> Iterator[None]:
-    """Our warnings as lines on standard error."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", EquipoiseWarning)
-        try:
-            yield
-        finally:
-            for warning in caught:
-                _say(f"warning: {warning.message}")
-
-
-@contextmanager
-def _progress(start: str) -> Iterator[Progress]:
-    """A progress bar on standard error, when that is a terminal, for work of more than a second."""
-    from rich import progress
-
-    from .report.text import console
-
-    screen = console(stderr=True)
-    columns = (progress.TextColumn("{task.description}"), progress.BarColumn(), progress.TimeElapsedColumn())
-    with progress.Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
-        task = bar.add_task(start, total=1.0)
-        yield lambda what, share: bar.update(task, description=what, completed=share, total=1.0 if share else None)
-
-
-def _print(lines: Iterator[Any]) -> None:
-    from .report.text import console
-
-    screen = console()
-    for line in lines:
-        screen.print(line)
-
-
-def _print_json(value: Any) -> None:
-    typer.echo(json_module.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))
-
-
-def _say(text: str) -> None:
-    typer.echo(text, err=True)
+    terminal.show(iter(lines))

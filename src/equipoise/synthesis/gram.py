@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, Booleans, Complexes
-from ..energy.fourier import Frames, NoFourierForm, gravity_series, spring_series
+from ..energy.fourier import gravity_series, spring_series
+from ..energy.frames import Frames, NoFourierForm
 from ..energy.potential import CHUNK_ENTRIES, Potential
 from ..energy.series import Series
 from ..kinematics import Poses, Tree, Velocities, sample
