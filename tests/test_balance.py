@@ -242,3 +242,8 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
     first, second = (json.dumps(check(m, samples=50, seed=4).to_dict()) for _ in range(2))
     assert first == second
     assert isinstance(check(m, samples=50), Balance)
+
+
+def test_without_springs_residual_and_unbalanced_are_the_same():
+    balance = check(random_mechanism(3).with_springs(()), samples=200)
+    assert (balance.residual.max == balance.unbalanced.max).all()

@@ -283,3 +283,39 @@ def test_importing_the_package_imports_nothing_heavy():
     heavy = ("scipy", "pydantic", "pint", "clarabel", "matplotlib", "mujoco", "typer", "ruamel")
     code = f"import sys, equipoise; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_a_torque_as_tolerance_needs_joints_that_turn(run, tmp_path):
+    path = tmp_path / "lift.yaml"
+    path.write_text(
+        "schema: 1\nname: lift\nbodies: [{name: cage, mass: 2}]\n"
+        "joints: [{name: slide, type: prismatic, parent: world, child: cage, axis: [0, 0, 1], range: [0, 1]}]\n"
+    )
+    code, _, err = run("check", path, "--tolerance", "30 N m")
+    assert code == 2
+    assert "sliding" in err
+    assert run("check", path, "--tolerance", "2")[0] == 0
+
+
+def test_export_into_a_pipe():
+    command = f"{sys.executable} -m equipoise export {ROBOTS / 'ur5.urdf'} --to yaml -o /dev/stdout | head -1"
+    shell = ["bash", "-o", "pipefail", "-c", command]
+    assert subprocess.run(shell, capture_output=True, text=True).stdout == "schema: 1\n"
+
+
+def test_a_full_disk_is_one_line(pendulum):
+    command = [sys.executable, "-m", "equipoise", "check", str(pendulum())]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "error: no space left on device\n"
+
+
+@pytest.mark.parametrize("name", ["\\e[31mred", "two\\nlines", "\\ud800"])
+def test_names_that_would_reach_the_terminal_are_refused(run, tmp_path, name):
+    path = tmp_path / "name.yaml"
+    path.write_text(f'schema: 1\nname: "{name}"\nbodies: []\n')
+    code, _, err = run("check", path)
+    assert code == 2
+    assert "cannot be printed" in err or "not" in err
+    assert "\x1b" not in err

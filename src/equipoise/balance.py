@@ -19,6 +19,7 @@ from .energy.potential import Potential, State
 from .errors import InputError
 from .kinematics import Tree, sample
 from .mechanism import Mechanism
+from .validate import MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
 
@@ -165,7 +166,10 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         InputError: the ranges of coupled joints contradict each other, or its numbers are so large that they overflow.
     """
     tree = Tree.of(mechanism)
-    q = sample(tree, samples or mechanism.workspace.samples, seed)
+    samples = mechanism.workspace.samples if samples is None else samples
+    whole_number("samples", samples, 1, MAX_SAMPLES)
+    whole_number("seed", seed, 0)
+    q = sample(tree, samples, seed)
     potential = Potential(mechanism)
     state = potential(q)
     series, reason = _series(mechanism, max_terms)

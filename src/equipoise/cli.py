@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -32,14 +33,23 @@ Json = Annotated[bool, typer.Option("--json", help="print one JSON object on sta
 
 def main() -> None:
     """The entry point: errors become one message and an exit code, never a traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a letter is no reason to fail
     try:
         app()
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        sys.exit(130)
     except EquipoiseError as error:
         typer.echo(f"error: {error}", err=True)
         sys.exit(error.exit_code)
     except BrokenPipeError:  # the reader of our output has closed it, `| head` for example
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
+    except OSError as error:
+        typer.echo(f"error: {(error.strerror or str(error)).lower()}", err=True)
+        sys.exit(2)
     except Exception as error:
         if os.environ.get("EQUIPOISE_DEBUG"):
             raise
@@ -81,6 +91,8 @@ def check(
 
     share, torque = options.tolerance(tolerance)
     mechanism = terminal.load(file)
+    if torque is not None and "m" in mechanism.coordinate_units:
+        raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
     with terminal.progress_bar("judging") as report:
         report("judging the balance", 0.0)
         balance = judge(mechanism, samples=samples, seed=seed)
@@ -190,7 +202,7 @@ def design(
     if plot:
         check_drawable(plot)
     if mechanism.springs and not keep:
-        terminal.say(f"note: the file's {len(mechanism.springs)} springs are replaced; --keep keeps them")
+        terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
     with terminal.progress_bar("designing") as report:
         found = run(mechanism, method, progress=report, **given)
         report("judging the design", 0.0)

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from .errors import InputError
 from .io import load, save
+from .io.files import check_writable
 from .report.figure import save_figure
 from .report.text import design_lines
 from .synthesis import design
@@ -35,12 +36,15 @@ def run(folder: Path, progress: Progress) -> list[RenderableType]:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot be made: {(error.strerror or str(error)).lower()}") from error
+    files = [folder / f"ur5-balanced{suffix}" for suffix in (".yaml", ".svg", ".png")]
+    for file in files:
+        check_writable(file)
     ur5 = load(robots() / "ur5.urdf")
     found = design(ur5, span=SPAN, radius=RADIUS, shape="box", springs=SPRINGS, front=True, progress=progress)
-    save(found.mechanism, folder / "ur5-balanced.yaml")
+    save(found.mechanism, files[0])
     progress("drawing", 0.0)
-    save_figure(found.mechanism, folder / "ur5-balanced.svg", balance=found.balance)
-    save_figure(found.mechanism, folder / "ur5-balanced.png", balance=found.balance)
+    for file in files[1:]:
+        save_figure(found.mechanism, file, balance=found.balance)
     command = f"equipoise design ur5.urdf --span {SPAN} --radius {1e3 * RADIUS:.0f}mm --box --springs {SPRINGS} --front"
     return [
         Text(f"$ {command}", style="dim"),

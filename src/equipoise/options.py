@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from .errors import Fault, InputError, nearest
@@ -15,7 +16,10 @@ def length(text: str, option: str) -> float:
     Raises:
         InputError: it is not a length; the message names the option.
     """
-    return _quantity(text, "length", option)
+    try:
+        return to_si(text, "length")
+    except ValueError as error:
+        raise InputError(Fault((option,), str(error))) from None
 
 
 def tolerance(text: str) -> tuple[float | None, float | None]:
@@ -24,12 +28,18 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     Raises:
         InputError: it is neither, or not positive.
     """
+    expected = "expected a share such as 1e-3 or 0.1%, or a torque such as '0.5 N m'"
+    share = torque = None
     try:
-        share, torque = (float(text.removesuffix("%")) / (100 if text.endswith("%") else 1), None)
+        share = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
     except ValueError:
-        share, torque = None, _quantity(text, "torque", "--tolerance")
-    if not (share if torque is None else torque) > 0:  # type: ignore[operator] - one of the two is a number
-        raise InputError(Fault(("--tolerance",), f"must be more than 0, found {text}"))
+        try:
+            torque = to_si(text, "torque")
+        except ValueError:
+            raise InputError(Fault(("--tolerance",), f"{expected}, found '{text}'")) from None
+    value = torque if share is None else share
+    if value is None or not 0 < value < inf:
+        raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
 
 
@@ -97,10 +107,3 @@ def _value(name: str, text: str) -> Any:
     if name == "joints":
         return names(text)
     return length(text, f"--set {name}") if name == "radius" else text
-
-
-def _quantity(text: str, dimension: str, option: str) -> float:
-    try:
-        return to_si(text, dimension)
-    except ValueError as error:
-        raise InputError(Fault((option,), str(error))) from None

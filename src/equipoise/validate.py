@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
+from numbers import Integral
 from typing import TYPE_CHECKING
 
-from .errors import Fault, Path, nearest
+from .errors import Fault, InputError, Path, nearest
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -26,6 +27,18 @@ def faults(mechanism: Mechanism) -> list[Fault]:
         *_springs(mechanism),
         *_loops(mechanism),
     ]
+
+
+def whole_number(name: str, value: object, least: int, most: int | None = None) -> None:
+    """Check an option that counts something.
+
+    Raises:
+        InputError: it is not a whole number from `least` to `most`.
+    """
+    limits = f"from {least} to {most:,}" if most is not None else f"of at least {least}"
+    whole = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    if whole is None or whole < least or (most is not None and whole > most):
+        raise InputError(Fault((name,), f"must be a whole number {limits}, found {value}"))
 
 
 def _numbers(m: Mechanism) -> Iterator[Fault]:
@@ -73,11 +86,15 @@ def _names(m: Mechanism) -> Iterator[Fault]:
         for i, item in enumerate(items):
             if not item.name:
                 yield Fault((kind, i, "name"), "must not be empty")
+            elif not item.name.isprintable():  # control characters would reach terminals and break XML
+                yield Fault((kind, i, "name"), f"has a character that cannot be printed: {item.name!a}")
             elif kind == "bodies" and item.name == "world":
                 yield Fault((kind, i, "name"), "'world' is the fixed frame and cannot be a body")
             elif item.name in seen:
                 yield Fault((kind, i, "name"), f"duplicate name '{item.name}', first used by {kind}[{seen[item.name]}]")
             seen.setdefault(item.name, i)
+    if not m.name.isprintable():
+        yield Fault(("name",), f"has a character that cannot be printed: {m.name!a}")
     # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
     spherical = {f"{j.name}.{letter}" for j in m.joints if j.type == "spherical" for letter in "xyz"}
     for i, joint in enumerate(m.joints):

@@ -47,4 +47,7 @@ def climb(tree: Tree, values: Callable[[Array], Array], q: Array, seed: int = 0)
         better = own[np.arange(m), winner] > best
         best_q = np.where(better[:, None], trial.reshape(m, tries, tree.n)[np.arange(m), winner], best_q)
         best = np.where(better, own[np.arange(m), winner], best)
-    return best, best_q
+    # what one quantity has found may serve another: without springs, residual and unbalanced torque are the same
+    shared = values(best_q)
+    owner = shared.argmax(axis=0)
+    return shared[owner, np.arange(m)], best_q[owner]

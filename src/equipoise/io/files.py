@@ -56,13 +56,12 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
     """
     name = os.fspath(path)
     try:
-        target = Path(os.path.realpath(name))
-        if target.is_dir():
+        if os.path.isdir(name):
             raise IsADirectoryError
-        if target.exists() and not target.is_file():
-            target.write_bytes(data)
+        if _special(name):
+            Path(name).write_bytes(data)
         else:
-            _replace(target, data)
+            _replace(Path(os.path.realpath(name)), data)
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise _fault(name, f"cannot be written: {_reason(error)}") from error
 
@@ -73,13 +72,21 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     Raises:
         InputError: the folder is missing or cannot be written to, or the path is a folder.
     """
-    target = Path(os.path.realpath(os.fspath(path)))
-    if target.is_dir():
-        raise _fault(os.fspath(path), "cannot be written: it is a folder")
-    if not target.parent.is_dir():
-        raise _fault(os.fspath(path), "cannot be written: no such file or folder")
-    if not os.access(target if target.exists() else target.parent, os.W_OK):
-        raise _fault(os.fspath(path), "cannot be written: permission denied")
+    name = os.fspath(path)
+    if os.path.isdir(name):
+        raise _fault(name, "cannot be written: it is a folder")
+    if _special(name):
+        return
+    folder = Path(os.path.realpath(name)).parent
+    if not folder.is_dir():
+        raise _fault(name, "cannot be written: no such file or folder")
+    if not os.access(folder, os.W_OK):  # the folder, because a new file takes the place of the old one
+        raise _fault(name, "cannot be written: permission denied")
+
+
+def _special(name: str) -> bool:
+    """Whether it is a pipe or a device, such as /dev/stdout: written to as it is, not replaced."""
+    return os.path.exists(name) and not os.path.isfile(name)
 
 
 def _replace(target: Path, data: bytes) -> None:

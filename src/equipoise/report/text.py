@@ -51,7 +51,7 @@ def verdict(balance: Balance) -> Text:
         largest = f"{certificate.terms:,} Fourier terms, the largest that varies is {certificate.max_coefficient:.2g} J"
         if balance.exact:
             return Text(f"EXACT: balanced at every configuration, proved ({largest})", style="bold green")
-        basis = f"proved over all configurations ({largest})"
+        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({largest})"
     else:
         basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
     if not len(balance.mechanism.coordinates):
@@ -90,7 +90,8 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
 def design_lines(design: Design) -> Iterator[RenderableType]:
     """What was reached, how that compares with the best possible, the front if there is one, and the verdict."""
     share = design.residual / design.unbalanced
-    yield Text(f"method {design.method}, objective {design.objective} torque of all joints", style="bold")
+    which = "all joints" if design.joints is None else ", ".join(design.joints)
+    yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses"
     yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
     floor = EXACT * design.unbalanced
@@ -133,7 +134,8 @@ def methods_table(mechanism: Mechanism) -> Table:
         reasons = method.applies(mechanism)
         answer = "yes" if not reasons else f"no: {'; '.join(reasons)}"
         parameters = "\n".join(f"{name}: {text}" for name, text in method.parameters.items())
-        table.add_row(method.name, answer, f"{method.summary}\n({method.source})", parameters)
+        cells = (method.name, answer, f"{method.summary}\n({method.source})", parameters)
+        table.add_row(*(Text(cell) for cell in cells))
     return table
 
 

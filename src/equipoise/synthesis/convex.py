@@ -1,32 +1,31 @@
-"""The method `convex`: the globally best springs for any tree, then few real springs certified against that bound."""
+"""The method `convex`: the least torque any springs can leave, and few real springs measured against that bound."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from ..energy.potential import lumped_masses
-from ..errors import Fault, InfeasibleError, InputError
+from ..errors import EquipoiseError, InfeasibleError, InputError
 from ..mechanism import Mechanism
-from ..spring import Spring
+from ..validate import whole_number
 from .bound import least_rms
-from .design import Design, FrontRow, Infeasible
+from .design import Design, Infeasible
 from .gram import Gram, build
-from .minimax import Peak
+from .judge import Judge
 from .mounts import Mounts
-from .polish import Springs
-from .problem import Objective, Pair, Problem, Progress, Region
-from .search import FEASIBLE, Found, Search
+from .problem import Objective, Pair, Problem, Progress, Region, Shape
+from .search import FEASIBLE, NOTHING, Found, Search
 
 ROUNDING = 1e-13
 MOST = 8  # springs tried when no number is given
 NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
 FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
 REMEDIES = 24  # other pairs tried when exact balance is infeasible
-FEW = 300
+FEW = 300  # poses that tell whether exact balance is possible
 
 
 def design(
@@ -35,7 +34,7 @@ def design(
     span: int = 2,
     pairs: Iterable[Pair] | None = None,
     radius: float | None = None,
-    shape: Literal["ball", "box"] = "ball",
+    shape: Shape = "ball",
     regions: Mapping[str, Region] | None = None,
     springs: int | None = None,
     objective: Objective = "rms",
@@ -64,8 +63,8 @@ def design(
         InfeasibleError: `exact`, and no springs on the pairs do it, or none were found.
         InputError: a bad option.  UnsupportedError: the mechanism has loops.
     """
-    if springs is not None and springs < 1:
-        raise InputError(Fault(("springs",), f"must be at least 1, found {springs}"))
+    if springs is not None:
+        whole_number("springs", springs, 1)
     bare = mechanism if keep else mechanism.with_springs(())
     problem = Problem.of(
         over_all_turns(bare) if unlimited else bare,
@@ -82,36 +81,34 @@ def design(
     gram = _worth_solving(build(problem, progress))
     search = Search(gram, seed, progress)
     bound = search.bound(tuple(range(len(gram.problem.pairs))))
-    feasible = bound < FEASIBLE
-    infeasible = None if feasible else _infeasible(gram, bound)
+    infeasible = None if bound < FEASIBLE else _infeasible(gram, bound)
     if exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
-
-    rows = list(search.front(springs or MOST)) if front else []
-    found = rows[-1] if rows else _choose(search, springs, bound)
-    if exact and not found.exact:
-        raise InfeasibleError(
-            f"springs on these pairs can balance exactly, but none were found with {found.count} or fewer: "
-            f"the best leaves {found.value * gram.unbalanced:.3g} N m; allow more springs"
-        )
-    chosen, value, least, unit = found.springs, found.value, 0.0 if feasible else bound, gram.unbalanced
-    if objective == "peak":
-        chosen, value, least, unit = _lower_peak(gram, found, feasible)
+    found, tried = _found(search, springs, bound, front)
+    judge = Judge(gram, 0.0 if infeasible is None else bound, objective, bare)
+    best = judge(search.pruned(found))
     averaged = gram.averaged and objective == "rms"
-    return Design(
-        mechanism=replace(bare, springs=(*bare.springs, *_springs(gram.problem, chosen, bare.springs))),
+    design = Design(
+        mechanism=best.mechanism,
         method="convex",
         objective=objective,
-        residual=value * unit,
-        unbalanced=unit,
-        bound=min(least, value) * unit,  # both hold to rounding or the solver's tolerance; neither may contradict
+        joints=problem.joints,
+        residual=best.value * judge.unit,
+        unbalanced=judge.unit,
+        bound=min(judge.least, best.value) * judge.unit,  # equal but for rounding where the bound is reached
         averaged=averaged,
         samples=None if averaged else problem.count,
-        free_parameters=_options(problem, span if pairs is None else None, springs, unlimited),
-        exact_feasible=feasible,
+        free_parameters=_options(problem, span if pairs is None else None, springs, unlimited, keep),
+        exact_feasible=infeasible is None,
         infeasible=infeasible,
-        front=tuple(_row(gram, row) for row in rows),
+        front=tuple(judge.row(row) for row in tried) if front else (),
     ).with_provenance()
+    if exact and not design.balance.exact:
+        raise InfeasibleError(
+            f"springs on these pairs may balance exactly, but none were found with {found.count} or fewer: "
+            f"the best leaves {design.residual:.3g} N m {objective} where it counts; allow more springs"
+        )
+    return design
 
 
 def applies(mechanism: Mechanism) -> list[str]:
@@ -125,28 +122,34 @@ def _worth_solving(gram: Gram) -> Gram:
     mass = sum(mass for _, mass, _ in lumped_masses(mechanism))
     weight = mass * float(np.linalg.norm(mechanism.gravity)) * Mounts.of(mechanism).reach
     if gram.unbalanced <= ROUNDING * weight:
-        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, gravity loads no joint that counts")
+        what = "the springs that stay balance" if mechanism.springs else "gravity loads"
+        which = "every joint that counts already" if mechanism.springs else "no joint that counts"
+        raise InputError(f"mechanism '{mechanism.name}': nothing to balance, {what} {which}")
     if not gram.useful:
         raise InfeasibleError("no spring on these pairs has any effect on a joint that counts")
     return gram.on(gram.useful)
 
 
-def _lower_peak(gram: Gram, found: Found, feasible: bool) -> tuple[Springs, float, float, float]:
-    """For the peak objective: (springs, peak, its bound, unit [N m]), both as shares of the unit."""
-    peak = Peak.of(gram)
-    least = 0.0 if feasible else peak.bound().value
-    springs, value = (found.springs, found.value) if found.exact else peak.polish(found.springs)
-    return springs, value, least, peak.unbalanced
-
-
-def _choose(search: Search, springs: int | None, bound: float) -> Found:
-    if springs is not None:
-        candidates = [search.best(count) for count in range(1, springs + 1)]
-        return min(candidates, key=lambda found: (not found.exact, 0 if found.exact else found.value, found.count))
-    found = search.best(1)
-    while found.count < MOST and not found.exact and (bound < FEASIBLE or found.value > bound + NEAR):
-        found = search.best(found.count + 1)
-    return found
+def _found(search: Search, springs: int | None, bound: float, every: bool) -> tuple[Found, list[Found]]:
+    """The design to deliver, and what was tried: with `every`, also what comes after it."""
+    tried: list[Found] = []
+    enough: Found | None = None
+    for found in search.front(springs or MOST):
+        tried.append(found)
+        near = springs is None and bound >= FEASIBLE and found.value <= bound + NEAR
+        if enough is None and (found.exact or near):
+            enough = found
+            if not every:
+                break
+    best = enough or tried[-1]
+    if best.value > 1 - NOTHING:
+        raise InfeasibleError("no springs on these pairs lower the torque of the joints that count")
+    if bound > best.value + FEASIBLE:
+        raise EquipoiseError(
+            f"the convex solver's bound ({bound:.3g} of the unbalanced torque) contradicts a design that leaves "
+            f"{best.value:.3g}: the problem is badly scaled; try a larger radius"
+        )
+    return best, tried
 
 
 def _infeasible(gram: Gram, bound: float) -> Infeasible:
@@ -157,36 +160,14 @@ def _infeasible(gram: Gram, bound: float) -> Infeasible:
     # a large mechanism has hundreds of other pairs: the nearest ones are tried
     missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
     missing = sorted(missing, key=mounts.apart)[:REMEDIES]
-    pairs = [*problem.pairs, *missing]
-    # exact balance at a few hundred random poses is exact balance: fewer samples will do
-    samples = None if gram.averaged else FEW
-    wider = Problem.of(problem.mechanism, pairs=pairs, regions=problem.regions, joints=problem.joints, samples=samples)
+    wider = problem.with_pairs([*problem.pairs, *missing])
+    if not gram.averaged:  # exact balance at a few hundred random poses is exact balance
+        wider = replace(wider, samples=FEW)
     wide, own = build(wider), list(range(len(problem.pairs)))
     remedies = [p for i, p in enumerate(missing, len(own)) if least_rms(wide.on([*own, i])).value < FEASIBLE]
     unit = gram.unbalanced
-    return Infeasible(problem.pairs, bound * unit, far * unit if far >= FEASIBLE else 0.0, tuple(remedies))
-
-
-def _springs(problem: Problem, found: Springs, present: tuple[Spring, ...]) -> list[Spring]:
-    taken = {spring.name for spring in present}
-    names = (name for i in range(1, 10_000) if (name := f"spring {i}") not in taken)
-    springs = []
-    for pair, k, y in zip(found.pair[0], found.k[0], found.y[0], strict=True):
-        body_a, body_b = problem.pairs[pair]
-        z = problem.lift((body_a, body_b)) @ y
-        springs.append(Spring(next(names), body_a, _point(z[:3]), body_b, _point(z[4:]), float(k)))
-    return springs
-
-
-def _point(p: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in p)
-    return x, y, z
-
-
-def _row(gram: Gram, found: Found) -> FrontRow:
-    bound = None if found.bound is None else (found.bound if found.bound >= FEASIBLE else 0.0) * gram.unbalanced
-    pairs = tuple(gram.problem.pairs[i] for i in found.springs.pair[0])
-    return FrontRow(found.count, found.value * gram.unbalanced, bound, pairs, found.exact)
+    far = far * unit if far >= FEASIBLE else 0.0
+    return Infeasible(problem.pairs, bound * unit, far, tuple(remedies), len(missing))
 
 
 def over_all_turns(mechanism: Mechanism) -> Mechanism:
@@ -196,7 +177,7 @@ def over_all_turns(mechanism: Mechanism) -> Mechanism:
     )
 
 
-def _options(problem: Problem, span: int | None, springs: int | None, unlimited: bool) -> dict[str, Any]:
+def _options(problem: Problem, span: int | None, springs: int | None, unlimited: bool, keep: bool) -> dict[str, Any]:
     return {
         **({"span": span} if span is not None else {}),
         "pairs": [list(pair) for pair in problem.pairs],
@@ -209,5 +190,6 @@ def _options(problem: Problem, span: int | None, springs: int | None, unlimited:
         "joints": None if problem.joints is None else list(problem.joints),
         "samples": problem.samples,
         "unlimited": unlimited,
+        "keep": keep,
         "seed": problem.seed,
     }

@@ -28,26 +28,29 @@ class Infeasible:
     """Proof that no springs on `pairs` balance exactly.
 
     Attributes:
-        least: [N m] torque (of the design's objective) that every choice of springs leaves.
+        least: [N m] root mean square torque that every choice of springs leaves.
         far: the same with regions ten times as large, which tells whether the pairs or the regions are to blame.
-        remedies: of the nearest other pairs, 24 at most, those any one of which would make exact balance possible.
+        remedies: of the nearest other pairs, those any one of which would make exact balance possible.
+        tried: how many other pairs that was.
     """
 
     pairs: tuple[tuple[str, str], ...]
     least: float
     far: float
     remedies: tuple[tuple[str, str], ...]
+    tried: int
 
     def __str__(self) -> str:
         pairs = ", ".join(f"{a}:{b}" for a, b in self.pairs)
-        text = f"exact balance is infeasible with springs on {pairs}: every choice leaves at least {self.least:.4g} N m"
+        text = f"exact balance is infeasible with springs on {pairs}: "
+        text += f"every choice leaves at least {self.least:.4g} N m rms"
         if self.far > 0:
-            text += f" ({self.far:.4g} N m even with attachments ten times as far out)"
+            text += f" ({self.far:.4g} N m rms even with attachments ten times as far out)"
         if self.remedies:
             text += "; adding any one of these pairs makes it feasible: "
             text += ", ".join(f"{a}:{b}" for a, b in self.remedies)
-        else:
-            text += "; no single further pair makes it feasible"
+        elif self.tried:
+            text += f"; none of the {self.tried} nearest other pairs makes it feasible by itself"
         return text
 
 
@@ -62,6 +65,7 @@ class Design:
         residual: [N m] torque that is left.
         unbalanced: [N m] torque without the springs.
         bound: [N m] no springs on the allowed pairs and regions can leave less; None for methods without one.
+        joints: the coordinates that count, None for all.
         averaged: whether these are exact averages over all configurations, or over random poses.
         samples: the number of random poses, None when the averages are exact.
         free_parameters: the options the method was called with.
@@ -76,6 +80,7 @@ class Design:
     residual: float
     unbalanced: float
     bound: float | None = None
+    joints: tuple[str, ...] | None = None
     averaged: bool = False
     samples: int | None = None
     free_parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -118,6 +123,7 @@ class Design:
             "objective": self.objective,
             "residual": self.residual,
             "unbalanced": self.unbalanced,
+            "joints": None if self.joints is None else list(self.joints),
             "averaged": self.averaged,
             "samples": self.samples,
             "exact_feasible": self.exact_feasible,

@@ -20,6 +20,7 @@ from ..energy.fourier import gravity_series, spring_series
 from ..energy.frames import Frames, NoFourierForm
 from ..energy.potential import CHUNK_ENTRIES, Potential
 from ..energy.series import Series
+from ..errors import InputError
 from ..kinematics import Poses, Tree, Velocities, sample
 from ..kinematics.sampling import whole_turns
 from ..rotation import skew
@@ -68,7 +69,7 @@ class Gram:
     def on(self, chosen: list[int]) -> Gram:
         """The same problem restricted to some of its pairs (by number)."""
         pairs = tuple(self.problem.pairs[i] for i in chosen)
-        return replace(self, problem=self.problem.on(pairs), Q=self.Q[chosen], store=self.store[chosen])
+        return replace(self, problem=replace(self.problem, pairs=pairs), Q=self.Q[chosen], store=self.store[chosen])
 
     @property
     def box(self) -> Booleans:
@@ -96,10 +97,15 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
 
     Raises:
         UnsupportedError: the mechanism has loops.
+        InputError: its numbers or regions are so large that the torques overflow.
     """
-    rows = None if problem.samples is not None else _averages(problem)
-    averaged = rows is not None
-    R, store = rows or _samples(problem, progress)
+    with np.errstate(over="ignore", invalid="ignore"):
+        rows = None if problem.samples is not None else _averages(problem)
+        averaged = rows is not None
+        R, store = rows or _samples(problem, progress)
+        finite = np.isfinite(R**2).all()
+    if not finite:
+        raise InputError(f"mechanism '{problem.mechanism.name}' has numbers so large that its torques overflow")
     U, S, Vt = np.linalg.svd(R[:, :-1], full_matrices=False)
     rank = int((RANK * S[0] < S).sum()) if len(S) and S[0] > 0 else 0
     d = (U.T @ R[:, -1])[:rank]

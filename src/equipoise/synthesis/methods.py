@@ -34,7 +34,7 @@ METHODS: dict[str, Method] = {
     for method in (
         Method(
             "convex",
-            "globally best zero-free-length springs between any bodies of a tree, exact where feasible",
+            "zero-free-length springs between any bodies of a tree: exact where feasible, beside a global bound",
             "THEORY section 4: semidefinite program over moment matrices, then local polish",
             convex.applies,
             convex.design,

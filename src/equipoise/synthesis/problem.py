@@ -15,13 +15,17 @@ import numpy as np
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
-from ..mechanism import WORLD, Mechanism
+from ..mechanism import Mechanism
+from ..validate import MAX_SAMPLES, whole_number
 from .mounts import Mounts
 
 Pair = tuple[str, str]
 Progress = Callable[[str, float], None]  # what is being done, and the share of it that is done
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
+Shape = Literal["ball", "box"]
+SHAPES: tuple[Shape, ...] = ("ball", "box")
+EXTREME = 1e6  # regions so much smaller or larger than the mechanism are beyond double precision
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class Region:
 
     centre: tuple[float, float, float]
     half: tuple[float, float, float]
-    shape: Literal["ball", "box"] = "ball"
+    shape: Shape = "ball"
 
     @staticmethod
     def ball(radius: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
@@ -72,6 +76,7 @@ class Problem:
         joints: the coordinates whose torque counts (all of them when None): the arm of a whole body, for example.
         samples: random poses inside the joint ranges that the goal is judged on; None takes exact averages over all
             configurations where the mechanism allows it, else the workspace's number of samples.
+        radius, shape: of the region of any other body [m], where none is given.
     """
 
     mechanism: Mechanism
@@ -81,6 +86,8 @@ class Problem:
     joints: tuple[str, ...] | None = None
     samples: int | None = None
     seed: int = 0
+    radius: float | None = None
+    shape: Shape = "ball"
 
     @staticmethod
     def of(
@@ -89,7 +96,7 @@ class Problem:
         span: int = 2,
         pairs: Iterable[Pair] | None = None,
         radius: float | None = None,
-        shape: Literal["ball", "box"] = "ball",
+        shape: Shape = "ball",
         regions: Mapping[str, Region] | None = None,
         objective: Objective = "rms",
         joints: Iterable[str] | None = None,
@@ -104,34 +111,48 @@ class Problem:
             joints: names of joints or coordinates; a spherical joint stands for its three.
 
         Raises:
-            InputError: an unknown body or joint, a pair of one body, no pair at all, a radius that is not positive.
+            InputError: an unknown body or joint, a pair of one body, no pair at all, an option out of range.
             UnsupportedError: the mechanism has loops.
         """
         mounts = Mounts.of(mechanism)
-        chosen = mounts.pairs(span) if pairs is None else tuple(dict.fromkeys(_known(mechanism, p) for p in pairs))
+        whole_number("span", span, 1)
+        whole_number("seed", seed, 0)
+        if samples is not None:
+            whole_number("samples", samples, 1, MAX_SAMPLES)
+        for name, value, valid in (("objective", objective, OBJECTIVES), ("shape", shape, SHAPES)):
+            if value not in valid:
+                raise InputError(Fault((name,), f"unknown {name} {nearest(value, valid)}", valid))
+        if len(mounts.bodies) < 2 and pairs is None:
+            raise InputError(f"mechanism '{mechanism.name}': there are no two bodies that a spring could join")
+        chosen = mounts.pairs(span) if pairs is None else _distinct(_known(mechanism, "pairs", p) for p in pairs)
         if not chosen:
-            raise InputError(Fault(("pairs",), f"no pair of bodies within a span of {span}; give more span or --pairs"))
-        if objective not in OBJECTIVES:
-            raise InputError(Fault(("objective",), f"unknown objective {nearest(objective, OBJECTIVES)}", OBJECTIVES))
-        if radius is not None and not (np.isfinite(radius) and radius > 0):
-            raise InputError(Fault(("radius",), f"must be more than 0 m, found {radius:g}"))
+            raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
         given = dict(regions or {})
         for body in given:
-            _known(mechanism, (WORLD, body) if body != WORLD else (WORLD,))
-        make = Region.ball if shape == "ball" else Region.box
-        names = dict.fromkeys(name for pair in chosen for name in pair)
-        every = {name: given.get(name) or make(radius or mounts.default_radius(name)) for name in names}
+            _known(mechanism, "regions", (body,))
         counted = None if joints is None else _coordinates(mechanism, joints)
-        return Problem(mechanism, chosen, every, objective, counted, samples, seed)
+        problem = Problem(mechanism, (), given, objective, counted, samples, seed, radius, shape)
+        return problem.with_pairs(chosen)
+
+    def with_pairs(self, pairs: Iterable[Pair]) -> Problem:
+        """The same problem on other pairs; bodies without a region get the default one.
+
+        Raises:
+            InputError: a region is of no size, or out of all proportion to the mechanism.
+        """
+        mounts, pairs = Mounts.of(self.mechanism), tuple(pairs)
+        make = Region.ball if self.shape == "ball" else Region.box
+        regions = dict(self.regions)
+        for name in dict.fromkeys(name for pair in pairs for name in pair):
+            radius = mounts.default_radius(name) if self.radius is None else self.radius
+            regions.setdefault(name, make(radius))
+            _sized(name, regions[name], mounts.reach)
+        return replace(self, pairs=pairs, regions=regions)
 
     @property
     def count(self) -> int:
         """The number of random poses where averages are not exact."""
         return self.samples or self.mechanism.workspace.samples
-
-    def on(self, pairs: Iterable[Pair]) -> Problem:
-        """The same problem on other pairs (bodies that have a region)."""
-        return replace(self, pairs=tuple(pairs))
 
     def enlarged(self, factor: float) -> Problem:
         """The same problem with every region enlarged about its centre."""
@@ -166,13 +187,26 @@ def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]
     return tuple(dict.fromkeys(found))
 
 
-def _known(mechanism: Mechanism, pair: Iterable[str]) -> Pair:
-    pair = tuple(pair)
-    for name in pair:
+def _sized(name: str, region: Region, reach: float) -> None:
+    half = np.array(region.half)
+    if not (np.isfinite([*half, *region.centre]).all() and (half >= 0).all() and half.max() > 0):
+        raise InputError(Fault(("regions", name), f"its size must be more than 0 m, found {half.max():g}"))
+    if not reach / EXTREME <= half.max() <= reach * EXTREME:
+        limits = f"{reach / EXTREME:.1g} m and {reach * EXTREME:.1g} m"
+        raise InputError(Fault(("regions", name), f"its size must be between {limits}, found {half.max():g} m"))
+
+
+def _distinct(pairs: Iterable[Pair]) -> tuple[Pair, ...]:
+    """Each pair once, whichever end is named first."""
+    return tuple({frozenset(pair): pair for pair in reversed(list(pairs))}.values())[::-1]
+
+
+def _known(mechanism: Mechanism, field: str, names: Iterable[str]) -> Pair:
+    names = tuple(names)
+    for name in names:
         if name not in mechanism.body_names:
-            raise InputError(
-                Fault(("pairs",), f"there is no body {nearest(name, mechanism.body_names)}", mechanism.body_names)
-            )
-    if len(set(pair)) != len(pair):
-        raise InputError(Fault(("pairs",), f"a spring needs two different bodies, found {':'.join(pair)}"))
-    return pair  # type: ignore[return-value]
+            choices = mechanism.body_names
+            raise InputError(Fault((field,), f"there is no body {nearest(name, choices)}", choices))
+    if field == "pairs" and len(set(names)) != 2:
+        raise InputError(Fault((field,), f"a spring needs two different bodies, found {':'.join(names)}"))
+    return names  # type: ignore[return-value]

@@ -7,7 +7,7 @@ many random starts are polished under the true constraints.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, combinations_with_replacement, islice
 from math import comb
 
@@ -18,15 +18,17 @@ from .gram import Gram
 from .polish import STALL, Springs, best_stiffness, polish, project
 from .problem import Progress
 
-EXACT = 1e-11  # share of the unbalanced torque that counts as exact here; the certificate has the last word
+NOTHING = 1e-11  # share of the unbalanced torque that is only rounding here; the certificate has the last word
 FEASIBLE = 1e-6  # a convex bound below this share is zero within the solver's tolerance
 EXHAUSTIVE = 500  # sets of pairs up to which every one gets its bound
 BEAM = 6  # otherwise only the best so many sets are extended by one more pair
 SETS = 10  # sets of pairs polished for each number of springs
-STARTS = 48  # random starts on each
+STARTS = 48  # random starts on each; the best quarter is polished to the end
+SHORT = 30  # iterations for all starts
+MORE, MANY = 128, 40  # starts, and sets, where exact springs may exist and were not found
 NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
-FIRST = 30  # iterations from every start, before
-SECOND = 24  # starts, the best so far, are polished to the end
+SAME = 1e-6  # relative: a spring that improves less is not needed
+CLOSE = 1.001  # times the bound: as good as it
 SPLITS = 6  # ways to distribute the springs over the pairs of a set
 
 
@@ -48,7 +50,7 @@ class Found:
     @property
     def exact(self) -> bool:
         """Zero to rounding."""
-        return self.value < EXACT
+        return self.value < NOTHING
 
 
 @dataclass
@@ -82,52 +84,71 @@ class Search:
         return sorted(candidates, key=lambda c: (max(self.bound(c), FEASIBLE), c)), every
 
     def best(self, count: int) -> Found:
-        """The best design with at most `count` springs."""
+        """The best design found with at most `count` springs."""
         sets, every = self.sets(count)
         bound = self.bound(sets[0]) if every else None
         smaller = [s for size in range(1, min(count, len(self.gram.problem.pairs))) for s in self.sets(size)[0][:SETS]]
         promising = sorted([*sets[:SETS], *smaller], key=lambda c: (max(self.bound(c), FEASIBLE), len(c)))[: 2 * SETS]
-        best: Found | None = None
-        for i, chosen in enumerate(promising):
-            if best is not None and self.bound(chosen) > best.value:
-                break  # no design on this set, nor on any later one, can be better
-            found = self._polished(chosen, count, bound)
-            if best is None or self._better(found, best):
-                best = found
-            self._report(f"polishing {count} springs", (i + 1) / len(promising))
-        assert best is not None  # there is always at least one pair
+        best = self._try(promising, count, bound, STARTS)
+        if not best.exact:
+            # exact springs may exist on any set whose bound is zero, and small regions hide them from most starts
+            tried = [s for size in range(1, count + 1) for s in self.sets(size)[0]]
+            for chosen in [s for s in dict.fromkeys(tried) if self.bound(s) < FEASIBLE][:MANY]:
+                found = self._polished(chosen, count, bound, MORE)
+                best = found if self._better(found, best) else best
+                self._report(f"looking for {count} exact spring{'s' * (count > 1)}", 0.0)
+                if best.exact:
+                    break
         return best
 
     def front(self, most: int) -> Iterator[Found]:
-        """The best designs with at most 1, 2, ... springs, until exact, or as good as the bound, or `most`."""
+        """The best designs found with at most 1, 2, ... springs, until exact, or as good as the bound, or `most`."""
         floor = self.bound(tuple(range(len(self.gram.problem.pairs))))
-        last: Found | None = None
-        for count in range(1, most + 1):
-            found = self.best(count)
-            last = (
-                found
-                if last is None or self._better(found, last)
-                else Found(count, last.springs, last.value, found.bound)
-            )
+        last = self.best(1)
+        yield last
+        while last.count < most and not last.exact and (floor <= FEASIBLE or last.value > CLOSE * floor):
+            found = self.best(last.count + 1)
+            kept = found if self._better(found, last) else last
+            last = replace(kept, count=found.count, bound=found.bound)
             yield last
-            if last.exact or (floor > FEASIBLE and last.value < 1.001 * floor):
-                return
 
-    def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None) -> Found:
+    def pruned(self, found: Found) -> Found:
+        """The same without the springs that are not needed: none can go without a loss."""
+        for i in range(found.springs.k.shape[1]):
+            if found.springs.k.shape[1] == 1:
+                break
+            rest = [j for j in range(found.springs.k.shape[1]) if j != i]
+            fewer = Springs(found.springs.pair[:, rest], found.springs.k[:, rest], found.springs.u[:, rest])
+            springs, value = polish(self.gram, fewer)
+            less = replace(found, springs=springs, value=float(value[0]))
+            if less.exact if found.exact else less.value <= found.value * (1 + SAME):
+                return self.pruned(less)
+        return found
+
+    def _try(self, sets: list[tuple[int, ...]], count: int, bound: float | None, starts: int) -> Found:
+        best = self._polished(sets[0], count, bound, starts)
+        for i, chosen in enumerate(sets[1:], 2):
+            if self.bound(chosen) > best.value:
+                break  # no design on this set, nor on any later one, can be better
+            found = self._polished(chosen, count, bound, starts)
+            best = found if self._better(found, best) else best
+            self._report(f"polishing {count} spring{'s' * (count > 1)}", i / len(sets))
+        return best
+
+    def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None, starts: int) -> Found:
         gram = self.gram.on(list(chosen))
         rng = np.random.default_rng([self.seed, count, *chosen])
         spare = count - len(chosen)
         splits = list(islice(combinations_with_replacement(range(len(chosen)), spare), SPLITS))
-        local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], STARTS, axis=0)
+        local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], starts, axis=0)
         u = project(rng.uniform(-1, 1, (*local.shape, 2, 3)), gram.box[local])
         start = best_stiffness(gram, Springs(local, np.ones(local.shape), u))
-        springs, value = polish(gram, start, FIRST)
-        springs, value = polish(gram, springs[np.argsort(value)[:SECOND]])
+        springs, value = polish(gram, start, SHORT)
+        springs, value = polish(gram, springs[np.argsort(value)[: len(springs) // 4 + 8]])
         good = np.flatnonzero(value <= max(value.min() * (1 + NEARLY), 10 * STALL))
         winner = good[springs.store(gram)[good].argmin()]  # among equals, the one that stores least
-        chosen_springs = springs[winner : winner + 1]
-        numbered = Springs(np.array(chosen)[chosen_springs.pair], chosen_springs.k, chosen_springs.u)
-        return Found(count, numbered, float(value[winner]), bound)
+        best = springs[winner : winner + 1]
+        return Found(count, Springs(np.array(chosen)[best.pair], best.k, best.u), float(value[winner]), bound)
 
     def _better(self, one: Found, other: Found) -> bool:
         if one.exact and other.exact:
