@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -240,7 +241,8 @@ def test_small_regions_do_not_hide_the_exact_springs():
 
 def test_exact_is_what_the_certificate_says():
     arm = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
-    for options in ({"samples": 1, "springs": 1}, {"joints": ["joint2"], "springs": 1}):
+    every: list[dict[str, Any]] = [{"samples": 1, "springs": 1}, {"joints": ["joint2"], "springs": 1}]
+    for options in every:
         design = eq.design(arm, span=2, radius=0.2, front=True, **options)
         assert not design.balance.exact
         assert not any(row.exact for row in design.front)
@@ -269,7 +271,7 @@ def test_springs_that_are_not_needed_are_not_delivered():
     arm = planar_arm([1], [0.4], [0.2])
     assert len(eq.design(arm, radius=0.1, springs=4).mechanism.springs) == 1
     balanced_tip = planar_arm([1.0, 1.0], [0.4, 0.3], [0.2, 0.0])
-    with pytest.raises(InfeasibleError, match="no springs on these pairs|no spring on these pairs"):
+    with pytest.raises(InfeasibleError, match=r"no springs? on these pairs"):
         eq.design(balanced_tip, pairs=[("link2", "link3")], radius=0.1)
 
 

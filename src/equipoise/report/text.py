@@ -82,8 +82,8 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
     """Each spring with its stiffness, attachments, greatest length and greatest force."""
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
         free = f", free length {1e3 * spring.free_length:.4g} mm" if spring.free_length else ""
-        ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)}"
-        most = f"at most {1e3 * use.max_length:.4g} mm and {use.max_force:.4g} N"
+        ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)} mm"
+        most = f"up to {1e3 * use.max_length:.3g} mm, {use.max_force:.3g} N"
         yield Text(f"{spring.name}: {spring.stiffness:.5g} N/m{free}, {ends}, {most}")
 
 
@@ -164,4 +164,4 @@ def _pose(value: float, unit: str) -> str:
 
 
 def _millimetres(p: Vec3) -> str:
-    return "(" + ", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) + ") mm"
+    return "(" + ", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) + ")"
