@@ -214,7 +214,7 @@ def test_of_many_coordinates_and_springs_the_first_are_shown(tmp_path):
     [
         eq.Mechanism("welded", bodies=(eq.Body("a", 1.0),), joints=(eq.Joint("j", "fixed", "world", "a"),)),
         replace(PENDULUM, gravity=(0.0, 0.0, 0.0)),
-        replace(PENDULUM, name="机器人 \x01 $\\frac{$"),
+        replace(PENDULUM, name="机器人 $\\frac{$"),
         PENDULUM.with_springs([replace(PENDULUM.springs[0], p_a=(0, 0, 0), p_b=(0, 0, 0))]),  # of no length
     ],
     ids=["nothing moves", "no gravity", "a name that no font has", "a spring of no length"],

@@ -83,7 +83,7 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
         free = f", free length {1e3 * spring.free_length:.4g} mm" if spring.free_length else ""
         ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)} mm"
-        most = f"up to {1e3 * use.max_length:.3g} mm, {use.max_force:.3g} N"
+        most = f"up to {1e3 * use.max_length:.0f} mm, {use.max_force:.3g} N"
         yield Text(f"{spring.name}: {spring.stiffness:.5g} N/m{free}, {ends}, {most}")
 
 
