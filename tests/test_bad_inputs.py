@@ -21,6 +21,16 @@ def test_message(path):
     assert message + "\n" == path.with_suffix(".txt").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_the_command_line_says_it_with_exit_code_2_and_writes_nothing(run, path, tmp_path):
+    before = sorted(FOLDER.iterdir())
+    code, out, err = run("design", path, "-o", tmp_path / "out.yaml", "--plot", tmp_path / "out.svg")
+    assert (code, out) == (2, "")
+    assert err.replace(f"{FOLDER}/", "") == f"error: {path.with_suffix('.txt').read_text(encoding='utf-8')}"
+    assert not list(tmp_path.iterdir())
+    assert sorted(FOLDER.iterdir()) == before
+
+
 def test_every_message_has_its_file():
     assert {path.stem for path in FILES} == {path.stem for path in FOLDER.glob("*.txt")}
 

@@ -9,7 +9,6 @@ import pytest
 from robots import ROBOTS, lee_chen
 
 import equipoise as eq
-from equipoise import cli
 
 PENDULUM = """\
 schema: 1
@@ -28,21 +27,6 @@ springs:
     free_length: FREE mm
 """
 CHECK_KEYS = {"mechanism", "coordinates", "exact", "certificate", "energy", "torque", "worst", "springs"}
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Call the command line in this process: (exit code, standard output, standard error)."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["equipoise", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        out, err = capsys.readouterr()
-        assert "Traceback" not in err
-        return int(stop.value.code or 0), out, err
-
-    return call
 
 
 @pytest.fixture

@@ -185,8 +185,9 @@ def pinocchio_model(m: Mechanism) -> tuple[Any, list[str]]:
     return model, names
 
 
-def test_gravity_agrees_with_pinocchio() -> None:
-    for seed in range(200):
+@pytest.mark.slow
+def test_gravity_of_500_mechanisms_agrees_with_pinocchio() -> None:
+    for seed in range(500):
         m = random_mechanism(seed, kinds=("fixed", "revolute", "prismatic", "spherical"))
         model, names = pinocchio_model(m)
         data = model.createData()
