@@ -25,7 +25,8 @@ BEAM = 6  # otherwise only the best so many sets are extended by one more pair
 SETS = 10  # sets of pairs polished for each number of springs
 STARTS = 48  # random starts on each; the best quarter is polished to the end
 SHORT = 30  # iterations for all starts
-MORE, MANY = 128, 40  # starts, and sets, where exact springs may exist and were not found
+MORE = 128  # starts where exact springs may exist and were not found, on
+MANY = 200  # sets over the square of the number of springs, which is how their cost grows
 NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
 SAME = 1e-6  # relative: a spring that improves less is not needed
 CLOSE = 1.001  # times the bound: as good as it
@@ -55,12 +56,13 @@ class Found:
 
 @dataclass
 class Search:
-    """The search over sets of pairs of one problem. Remembers the bound of every set."""
+    """The search over sets of pairs of one problem. Remembers the bound of every set, and the sets by size."""
 
     gram: Gram
     seed: int = 0
     progress: Progress | None = None
     bounds: dict[tuple[int, ...], Bound] = field(default_factory=dict)
+    ordered: dict[int, tuple[list[tuple[int, ...]], bool]] = field(default_factory=dict)
 
     def bound(self, pairs: tuple[int, ...]) -> float:
         """The convex bound of the pairs with these numbers."""
@@ -72,6 +74,8 @@ class Search:
         """Sets of `size` pairs, best bound first, and whether every one was looked at."""
         pairs = range(len(self.gram.problem.pairs))
         size = min(size, len(pairs))
+        if size in self.ordered:
+            return self.ordered[size]
         every = comb(len(pairs), size) <= EXHAUSTIVE
         if every:
             candidates = list(combinations(pairs, size))
@@ -80,8 +84,9 @@ class Search:
             candidates = sorted({tuple(sorted({*root, p})) for root in roots for p in pairs if p not in root})
         for i, candidate in enumerate(candidates):
             self.bound(candidate)
-            self._report(f"bounding sets of {size} pairs", (i + 1) / len(candidates))
-        return sorted(candidates, key=lambda c: (max(self.bound(c), FEASIBLE), c)), every
+            self._report(f"bounding sets of pairs, {size} at a time", (i + 1) / len(candidates))
+        self.ordered[size] = sorted(candidates, key=lambda c: (max(self.bound(c), FEASIBLE), c)), every
+        return self.ordered[size]
 
     def best(self, count: int) -> Found:
         """The best design found with at most `count` springs."""
@@ -93,7 +98,7 @@ class Search:
         if not best.exact:
             # exact springs may exist on any set whose bound is zero, and small regions hide them from most starts
             tried = [s for size in range(1, count + 1) for s in self.sets(size)[0]]
-            for chosen in [s for s in dict.fromkeys(tried) if self.bound(s) < FEASIBLE][:MANY]:
+            for chosen in [s for s in dict.fromkeys(tried) if self.bound(s) < FEASIBLE][: MANY // count**2 + 1]:
                 found = self._polished(chosen, count, bound, MORE)
                 best = found if self._better(found, best) else best
                 self._report(f"looking for {count} exact spring{'s' * (count > 1)}", 0.0)
