@@ -257,7 +257,7 @@ def demo(
 ) -> None:
     """The main job on a real robot, start to finish: a UR5 made weightless by three springs.
 
-    Example: [bold]equipoise demo -o /tmp/demo[/bold]
+    Example: [bold]equipoise demo -o my-demo[/bold]
     """
     from .demo import run
 
