@@ -172,7 +172,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     q = sample(tree, samples, seed)
     potential = Potential(mechanism)
     state = potential(q)
-    series, reason = _series(mechanism, max_terms)
+    series, reason = fourier_form(mechanism, max_terms)
 
     # every reported extreme climbs on its own: torques, energies both ways, lengths both ways
     def quantities(s: State) -> Array:
@@ -209,7 +209,8 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     )
 
 
-def _series(mechanism: Mechanism, max_terms: int) -> tuple[FourierEnergy | None, str | None]:
+def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[FourierEnergy | None, str | None]:
+    """The Fourier form of a mechanism's energy, or None and the reason why there is none."""
     try:
         return FourierEnergy(mechanism, max_terms), None
     except NoFourierForm as why:

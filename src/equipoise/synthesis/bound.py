@@ -27,7 +27,8 @@ class Bound:
     """The least torque that any springs on the pairs can leave.
 
     Attributes:
-        value: as a share of the unbalanced torque (rms or peak): the dual bound, valid up to the solver's tolerance.
+        value: as a share of the unbalanced torque (rms or peak): the lesser of the program's primal and dual optimum,
+            valid up to the solver's tolerance.
         N: (pairs, 7, 7) moment matrices that (nearly) reach it.
     """
 

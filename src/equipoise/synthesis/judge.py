@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..energy.fourier import FourierEnergy
-from ..energy.frames import NoFourierForm
+from ..balance import fourier_form
 from ..mechanism import Mechanism
 from ..spring import Spring
 from .design import FrontRow
@@ -51,6 +50,7 @@ class Judge:
     def row(self, found: Found) -> FrontRow:
         """A line of the front; exact only with a certificate."""
         judged = self(found)
+        series, _ = fourier_form(judged.mechanism)
         # the bounds of few springs are bounds of the mean square
         bound = None if self.peak or found.bound is None else min(found.bound, found.value)
         return FrontRow(
@@ -58,15 +58,8 @@ class Judge:
             residual=judged.value * self.unit,
             bound=None if bound is None else (bound if bound >= FEASIBLE else 0.0) * self.unit,
             pairs=tuple(self.gram.problem.pairs[i] for i in judged.springs.pair[0]),
-            exact=_proved(judged.mechanism),
+            exact=series is not None and series.exact,
         )
-
-
-def _proved(mechanism: Mechanism) -> bool:
-    try:
-        return FourierEnergy(mechanism).exact
-    except NoFourierForm:
-        return False
 
 
 def _springs(problem: Problem, found: Springs, present: tuple[Spring, ...]) -> list[Spring]:
