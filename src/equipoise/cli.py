@@ -124,7 +124,7 @@ def methods(file: File, json: Json = False) -> None:
                 "reasons": m.applies(mechanism),
                 "summary": m.summary,
                 "source": m.source,
-                "parameters": m.parameters,
+                "parameters": {name: parameter.help for name, parameter in m.parameters.items()},
             }
             for m in METHODS.values()
         ]
@@ -137,6 +137,7 @@ def methods(file: File, json: Json = False) -> None:
 
 @app.command()
 def design(
+    context: typer.Context,
     file: File,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write the design as a mechanism file")] = None,
     plot: Annotated[Path | None, typer.Option(help="write a figure: .svg, .png or .pdf")] = None,
@@ -194,6 +195,9 @@ def design(
         "keep": keep,
         "seed": seed,
     }
+    # a method knows its own defaults, and is told only what was asked for
+    asked = {"regions": "region", "shape": "box"}
+    given = {name: value for name, value in given.items() if terminal.typed(context, asked.get(name, name))}
     if method in METHODS:
         given |= options.settings(set_ or [], METHODS[method].parameters)
     mechanism = terminal.load(file)

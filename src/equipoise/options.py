@@ -6,8 +6,10 @@ from math import inf
 from typing import Any
 
 from .errors import Fault, InputError, nearest
-from .synthesis import Region
+from .synthesis import Parameter, Region
 from .units import to_si
+
+FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
 
 def length(text: str, option: str) -> float:
@@ -16,8 +18,12 @@ def length(text: str, option: str) -> float:
     Raises:
         InputError: it is not a length; the message names the option.
     """
+    return _quantity(text, "length", option)
+
+
+def _quantity(text: str, dimension: str, option: str) -> float:
     try:
-        return to_si(text, "length")
+        return to_si(text, dimension)
     except ValueError as error:
         raise InputError(Fault((option,), str(error))) from None
 
@@ -48,7 +54,7 @@ def names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
-def pairs(text: str) -> list[tuple[str, str]]:
+def pairs(text: str, option: str = "--pairs") -> list[tuple[str, str]]:
     """``A:B,C:D`` as pairs of body names.
 
     Raises:
@@ -58,7 +64,7 @@ def pairs(text: str) -> list[tuple[str, str]]:
     for part in text.split(","):
         names = [name.strip() for name in part.split(":")]
         if len(names) != 2 or not all(names):
-            raise InputError(Fault(("--pairs",), f"expected A:B,C:D with names of bodies, found '{part.strip()}'"))
+            raise InputError(Fault((option,), f"expected A:B,C:D with names of bodies, found '{part.strip()}'"))
         found.append((names[0], names[1]))
     return found
 
@@ -82,8 +88,8 @@ def regions(texts: list[str], box: bool) -> dict[str, Region]:
     return found
 
 
-def settings(texts: list[str], valid: dict[str, str]) -> dict[str, Any]:
-    """``NAME=VALUE`` of ``--set``, for the parameters that a method has.
+def settings(texts: list[str], valid: dict[str, Parameter]) -> dict[str, Any]:
+    """``NAME=VALUE`` of ``--set``, for the parameters that a method has; ``NAME.BODY=VALUE`` is for one body.
 
     Raises:
         InputError: an unknown name, or a value of the wrong kind.
@@ -91,19 +97,46 @@ def settings(texts: list[str], valid: dict[str, str]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for text in texts:
         name, equals, value = text.partition("=")
+        name, dot, body = name.partition(".")
         if not equals or name not in valid:
             problem = f"no parameter {nearest(name, valid)}" if equals else f"expected NAME=VALUE, found '{text}'"
             raise InputError(Fault(("--set",), problem, tuple(valid)))
-        found[name] = _value(name, value)
+        parameter = valid[name]
+        if dot and not parameter.each:
+            raise InputError(Fault(("--set", name), f"is one value for the whole mechanism, found '{text}'"))
+        read = _values(name, value, parameter)
+        if not parameter.each:
+            found[name] = read
+        else:
+            found.setdefault(name, {})["*" if not dot else body] = read
     return found
 
 
-def _value(name: str, text: str) -> Any:
-    if name in ("span", "springs", "samples", "seed"):
-        try:
-            return int(text)
-        except ValueError:
-            raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
-    if name == "joints":
-        return names(text)
-    return length(text, f"--set {name}") if name == "radius" else text
+def _values(name: str, text: str, parameter: Parameter) -> Any:
+    if parameter.many:
+        return [_value(name, part, parameter) for part in text.split(",")]
+    return _value(name, text, parameter)
+
+
+def _value(name: str, text: str, parameter: Parameter) -> Any:
+    text = text.strip()
+    if parameter.choices and text not in parameter.choices:
+        raise InputError(Fault(("--set", name), f"unknown value {nearest(text, parameter.choices)}", parameter.choices))
+    match parameter.kind:
+        case "text":
+            return text
+        case "names":
+            return names(text)
+        case "pairs":
+            return pairs(text, f"--set {name}")
+        case "flag":
+            if text not in FLAGS:
+                raise InputError(Fault(("--set", name), f"unknown value {nearest(text, FLAGS)}", tuple(FLAGS)))
+            return FLAGS[text]
+        case "whole":
+            try:
+                return int(text)
+            except ValueError:
+                raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
+        case dimension:
+            return _quantity(text, dimension, f"--set {name}")

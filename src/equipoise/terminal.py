@@ -25,6 +25,12 @@ def load(file: Path) -> Mechanism:
         return load(file)
 
 
+def typed(context: typer.Context, option: str) -> bool:
+    """Whether the option stands on the command line."""
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
+
+
 @contextmanager
 def shown_warnings() -> Iterator[None]:
     """Our warnings as lines on standard error."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from rich.console import Console, RenderableType
@@ -13,7 +13,8 @@ from ..balance import Balance
 from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
 from ..spring import Vec3
-from ..synthesis import METHODS, Design
+from ..synthesis import METHODS, Design, Parameter
+from ..units import SI_UNITS
 
 
 def console(stderr: bool = False) -> Console:
@@ -89,6 +90,7 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
 
 def design_lines(design: Design) -> Iterator[RenderableType]:
     """What was reached, how that compares with the best possible, the front if there is one, and the verdict."""
+    method = METHODS[design.method]
     share = design.residual / design.unbalanced
     which = "all joints" if design.joints is None else ", ".join(design.joints)
     yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
@@ -99,7 +101,14 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     if design.bound is not None and design.certified_gap is not None:
         least = f"{_torque(design.bound, floor)} N m  = {_percent(design.bound / design.unbalanced)}"
         gap = f"gap {_percent(design.certified_gap)} of unbalanced"
-        yield Text(f"  bound       {least}: no springs on these pairs and regions leave less; {gap}")
+        why = (
+            "the balance is exact"
+            if METHODS[design.method].exact
+            else "no springs on these pairs and regions leave less"
+        )
+        yield Text(f"  bound       {least}: {why}; {gap}")
+    for name, value in design.free_parameters.items() if method.exact else ():
+        yield Text(f"  {name:<11} {free_value(value, method.parameters.get(name))}")
     if design.infeasible is not None:
         yield Text(f"  {design.infeasible}", style="yellow")
     if design.front:
@@ -133,10 +142,26 @@ def methods_table(mechanism: Mechanism) -> Table:
     for method in METHODS.values():
         reasons = method.applies(mechanism)
         answer = "yes" if not reasons else f"no: {'; '.join(reasons)}"
-        parameters = "\n".join(f"{name}: {text}" for name, text in method.parameters.items())
+        parameters = "\n".join(_parameter(name, p) for name, p in method.parameters.items())
         cells = (method.name, answer, f"{method.summary}\n({method.source})", parameters)
         table.add_row(*(Text(cell) for cell in cells))
     return table
+
+
+def free_value(value: object, parameter: Parameter | None) -> str:
+    """A free parameter's value with its unit."""
+    unit = SI_UNITS.get(parameter.kind, "") if parameter else ""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {free_value(one, parameter)}" for name, one in value.items())
+    if isinstance(value, (list, tuple)):
+        return ", ".join(free_value(one, parameter) for one in value)
+    return f"{value:.6g} {unit}".rstrip() if isinstance(value, float) else str(value)
+
+
+def _parameter(name: str, parameter: Parameter) -> str:
+    unit = SI_UNITS.get(parameter.kind, "")
+    text = f"{name}{'[.BODY]' if parameter.each else ''}{f' [{unit}]' if unit else ''}: {parameter.help}"
+    return f"{text}; {', '.join(parameter.choices)}" if parameter.choices else text
 
 
 def _count(items: Sequence[object], noun: str) -> str:

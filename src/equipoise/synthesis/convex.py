@@ -16,8 +16,9 @@ from .bound import least_rms
 from .design import Design, Infeasible
 from .gram import Gram, build
 from .judge import Judge
+from .method import Method, Parameter
 from .mounts import Mounts
-from .problem import Objective, Pair, Problem, Progress, Region, Shape
+from .problem import OBJECTIVES, Objective, Pair, Problem, Progress, Region, Shape
 from .search import FEASIBLE, NOTHING, Found, Search
 
 ROUNDING = 1e-13
@@ -193,3 +194,22 @@ def _options(problem: Problem, span: int | None, springs: int | None, unlimited:
         "keep": keep,
         "seed": problem.seed,
     }
+
+
+METHOD = Method(
+    "convex",
+    "zero-free-length springs between any bodies of a tree: exact where feasible, beside a global bound",
+    "THEORY section 4: semidefinite program over moment matrices, then local polish",
+    applies,
+    design,
+    {
+        "span": Parameter("whole", "springs join bodies at most this many moving joints apart (default 2)"),
+        "radius": Parameter("length", "of every attachment region (default: from each link's size)"),
+        "springs": Parameter("whole", "at most so many (default: as few as are exact, or within 1 % of the bound)"),
+        "objective": Parameter("text", "what is minimised (default rms torque)", OBJECTIVES),
+        "joints": Parameter("names", "A,B,...: the joints whose torque counts (default: all)"),
+        "samples": Parameter("whole", "random poses to judge on (default: exact averages where possible)"),
+        "seed": Parameter("whole", "of the random starts and poses (default 0)"),
+    },
+    exact=False,
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import sqrt
 from typing import Any
 
 from .._version import __version__
@@ -87,6 +88,27 @@ class Design:
     exact_feasible: bool | None = None
     infeasible: Infeasible | None = None
     front: tuple[FrontRow, ...] = ()
+
+    @staticmethod
+    def of(mechanism: Mechanism, method: str, free_parameters: Mapping[str, Any]) -> Design:
+        """The design of a method that has formulas instead of an objective: judged by the root mean square torque.
+
+        Args:
+            free_parameters: what was chosen, given or by default, in SI units.
+        """
+        balance = check(mechanism)
+        residual, unbalanced = (sqrt(float(sum(load.rms**2))) for load in (balance.residual, balance.unbalanced))
+        return Design(
+            mechanism=mechanism,
+            method=method,
+            objective="rms",
+            residual=residual,
+            unbalanced=unbalanced,
+            bound=0.0 if balance.exact else None,  # nothing leaves less than nothing
+            samples=balance.certificate.samples,
+            free_parameters=free_parameters,
+            exact_feasible=True if balance.exact else None,
+        ).with_provenance()
 
     @cached_property
     def balance(self) -> Balance:

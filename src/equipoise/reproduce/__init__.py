@@ -1,0 +1,24 @@
+"""The source papers, reproduced: one file for each, with its data, its tables and figures, published beside computed."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from ..errors import Fault, InputError, nearest
+from .record import Map, Plot, Reproduction, Row
+
+PAPERS: tuple[str, ...] = ()
+"""Keys of the papers; each names its file."""
+
+__all__ = ["PAPERS", "Map", "Plot", "Reproduction", "Row", "reproduce"]
+
+
+def reproduce(paper: str) -> Reproduction:
+    """Compute everything that a paper prints.
+
+    Raises:
+        InputError: no such paper.
+    """
+    if paper not in PAPERS:
+        raise InputError(Fault(("paper",), f"there is no paper {nearest(paper, PAPERS)}", PAPERS))
+    return import_module(f".{paper}", __package__).reproduction()
