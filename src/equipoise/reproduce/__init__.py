@@ -1,4 +1,4 @@
-"""The source papers, reproduced: one file for each, with its data, its tables and figures, published beside computed."""
+"""The source papers, reproduced: one file for each, its tables and figures, published beside computed."""
 
 from __future__ import annotations
 

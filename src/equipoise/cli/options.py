@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from .errors import Fault, InputError, nearest
-from .synthesis import Parameter, Region
-from .units import to_si
+from ..errors import Fault, InputError, nearest
+from ..synthesis import Parameter, Region
+from ..units import to_si
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
