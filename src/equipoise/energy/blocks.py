@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 
 import numpy as np
 
@@ -36,12 +38,12 @@ class StiffnessBlocks:
         w[one.i : one.k - 1] = 1.0
         w[one.i - 1] = -one.a / arm.lengths[one.i - 1]
         w[one.k - 1] = one.b / arm.lengths[one.k - 1]
-        return StiffnessBlocks(one.stiffness * np.outer(w.conj(), w))
+        return StiffnessBlocks(one.stiffness * w.conj()[:, None] * w)
 
     @staticmethod
     def total(arm: PlanarArm, springs: Iterable[Installation]) -> StiffnessBlocks:
         """Eq. (23): gravity and all springs."""
-        return sum((StiffnessBlocks.spring(arm, one) for one in springs), StiffnessBlocks.gravity(arm))
+        return reduce(add, (StiffnessBlocks.spring(arm, one) for one in springs), StiffnessBlocks.gravity(arm))
 
     def __add__(self, other: StiffnessBlocks) -> StiffnessBlocks:
         return StiffnessBlocks(self.K + other.K)

@@ -7,7 +7,7 @@ spring between links i < k stretches
     d = -a u_i + r_{i+1} + .. + r_{k-1} + b u_k,      a, b complex [m]
 
 so that `a` is measured from the DISTAL joint of link i (the joint to link i+1; for the ground the first joint) and `b`
-from the proximal joint of link k. The paper's A = a/|r_i| and B = b/|r_k|, with |x_1| = 1 m, its angles arg a and arg b.
+from the proximal joint of link k. The paper's A = a/|r_i| and B = b/|r_k|, with |x_1| = 1 m, angles arg a and arg b.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -128,7 +129,7 @@ class PlanarArm:
         moments[0] = 0
         R = np.array([F @ R_W[tree.index[body]] for body in links])
         u = np.exp(1j * np.angle(reach))
-        lengths = abs(reach)
+        lengths: Array = np.abs(reach).astype(np.float64)
         if end is not None:
             lengths[-1] = end
         return PlanarArm(links, lengths, moments, float(np.linalg.norm(down)), R, p, u, first)
@@ -206,7 +207,7 @@ def obstacles(mechanism: Mechanism) -> list[str]:
     tree = Tree.of(mechanism)
     p = tree.poses(np.zeros((1, tree.n))).p[0]
     origin = [p[tree.index[joint.child]] for joint in chain]
-    gaps = [np.linalg.norm(np.cross(z, b - a)) for a, b in zip(origin, origin[1:], strict=False)]
+    gaps = [np.linalg.norm(np.cross(z, b - a)) for a, b in pairwise(origin)]
     same = [b.name for b, gap in zip(chain[1:], gaps, strict=True) if gap <= PARALLEL * max(gaps)]
     return [f"{', '.join(same)} turns about the same axis as the joint before"] if same else []
 
