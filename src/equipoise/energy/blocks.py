@@ -34,11 +34,11 @@ class StiffnessBlocks:
     @staticmethod
     def spring(arm: PlanarArm, one: Installation) -> StiffnessBlocks:
         """Eqs. (7)-(8): K = k w w^H with w = (0, .., -A, 1, .., 1, B, 0, ..)."""
-        w = np.zeros(arm.n, complex)
+        w: Complexes = np.zeros(arm.n, np.complex128)
         w[one.i : one.k - 1] = 1.0
         w[one.i - 1] = -one.a / arm.lengths[one.i - 1]
         w[one.k - 1] = one.b / arm.lengths[one.k - 1]
-        return StiffnessBlocks(one.stiffness * w.conj()[:, None] * w)
+        return StiffnessBlocks(one.stiffness * (w.conj()[:, None] @ w[None]))
 
     @staticmethod
     def total(arm: PlanarArm, springs: Iterable[Installation]) -> StiffnessBlocks:
