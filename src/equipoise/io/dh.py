@@ -38,7 +38,7 @@ def expand(table: DhTable, bodies: Sequence[Body]) -> tuple[list[tuple[Body, int
             rpy = _rx_rz(row.alpha, row.theta)
         else:
             child = f"{body.name}_axis"
-            if row.type == "revolute":  # Rz and Tz commute: the link, which has the offset d, starts at the frame before
+            if row.type == "revolute":  # Rz and Tz commute: the link, which has the offset d, starts at the last frame
                 xyz, offset = (0.0, 0.0, 0.0), row.d
             all_bodies.append((Body(child), i))
         all_bodies.append((body, i))

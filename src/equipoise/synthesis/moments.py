@@ -144,7 +144,7 @@ def moments(links: Sequence[Segment], extra: Mapping[int, Sequence[Lump]] | None
         mass = sum(m for m, _ in own)
         beyond[i] += mass
         mu[i] = mass + beyond[i]  # (7), (24)
-        # (8), (25) times mu_i: m_i s_i - m_i r_i is m_i times the place from O_{i-1}; -m_j r_i came from the links beyond
+        # (8), (25) times mu_i: m_i s_i - m_i r_i is m_i times the place from O_{i-1}; -m_j r_i came from those beyond
         vectors[i] += sum((m * p for m, p in own), np.zeros(3))
         if i:
             beyond[link.parent] += beyond[i]

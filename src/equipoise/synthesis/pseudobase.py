@@ -2,57 +2,27 @@
 
 P.-Y. Lin, W.-B. Shieh and D.-Z. Chen, "Design of a gravity-balanced general spatial serial-type manipulator",
 J. Mechanisms Robotics 2 (2010). Beside the arm runs a chain of auxiliary links, each parallel to its link and `height`
-above it; the bar C_i D_i between the two, the pseudobase, therefore stays vertical, and a spring from it balances link i
-as one from the ground balances a link that is hinged to the ground. Here the chain branches where the arm does, and the
-first links, which only turn about the vertical, carry their own ends of it.
+above it; the bar C_i D_i between the two, the pseudobase, therefore stays vertical, and a spring from it balances
+link i as one from the ground balances a link that is hinged to the ground. Here the chain branches where the arm does;
+the first links, which only turn about the vertical, carry the foot of the chain themselves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import isfinite, sqrt
-from typing import Any
+from math import sqrt
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
-from ..io.text import Names
-from ..kinematics import Tree
-from ..mechanism import WORLD, Body, Joint, Mechanism
-from ..spring import Spring, Vec3
+from ..mechanism import Mechanism
 from .design import Design
+from .given import Given, number, numbers, vectors
 from .method import Method, Parameter
-from .moments import NOTHING, Lump, Moment, Segment, moments, segments, slide_faults, upwards
+from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from .mounts import Mounts
-
-Value = float | Sequence[float]
-Given = Value | Mapping[str, Value] | None
-"""One value for all links, or link -> value with the value for all others under "*"."""
-
-
-@dataclass(frozen=True)
-class Module:
-    """A parallelogram O_{i-1} C_i D_i O^_{i-1}: link i, its pseudobase (the coupler C_i D_i) and its auxiliary link.
-
-    Attributes:
-        centre: C_i from O_{i-1}, along the link's axes [m].
-        mass, com: of the auxiliary link [kg], com as `centre`, but on its own chain [m].
-        coupler: mass of the pseudobase [kg]; its mass centre is halfway between C_i and D_i.
-        planar: a four-bar with revolute joints at C_i and D_i instead of spherical ones: no idle spin.
-    """
-
-    centre: Array
-    mass: float
-    com: Array
-    coupler: float
-    planar: bool
-
-    @property
-    def lumps(self) -> tuple[Lump, Lump]:
-        """What (24)-(25) add to the link: the auxiliary link, and the pseudobase at C_i."""
-        return (self.mass, self.com), (self.coupler, self.centre)
+from .parallelograms import Builder, Module, mobility
 
 
 def design(
@@ -95,13 +65,13 @@ def design(
     chain = _chain(links, primary, unit)
     names = [links[i].name for i in chain]
     mounts = Mounts.of(bare)
-    height = mounts.reach / 10 if height is None else _number("height", height, positive=True)
+    height = mounts.reach / 10 if height is None else number("height", height, positive=True)
     flat = _planar(links, chain, planar)
-    centres = _vectors("centre", centre, names)
-    shares = _numbers("auxiliary", auxiliary, names, positive=False)
-    weights = _numbers("auxiliary_mass", auxiliary_mass, names, positive=False)
-    coms = _vectors("auxiliary_com", auxiliary_com, names)
-    couplers = _numbers("pseudobase", pseudobase, names, positive=False)
+    centres = vectors("centre", centre, names)
+    shares = numbers("auxiliary", auxiliary, names, positive=False)
+    weights = numbers("auxiliary_mass", auxiliary_mass, names, positive=False)
+    coms = vectors("auxiliary_com", auxiliary_com, names)
+    couplers = numbers("pseudobase", pseudobase, names, positive=False)
 
     modules: dict[int, Module] = {}
     for i in chain:
@@ -126,7 +96,7 @@ def design(
     sizes = _sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},
                    {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
                    stiffness, l_CA, l_CB)  # fmt: skip
-    balanced = _Builder(bare, links, height).build(modules, whole, sprung, sizes)
+    balanced = Builder(bare, links, height).build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
         "stiffness": {name: K for name, (K, _, _) in sizes.items()},
@@ -170,18 +140,6 @@ _UNFIT = {
 }
 
 
-def mobility(turning: int, modules: int) -> tuple[int, int]:
-    """(active, idle) freedoms of an arm with so many freedoms and spatial modules, by Eqs. (19)-(20).
-
-    A module adds an auxiliary link on a revolute joint, and a pseudobase on two spherical joints that may spin about
-    the line between them. A planar four-bar moves as one in its plane adds no freedom: it is not counted here.
-    """
-    links = 1 + turning + 2 * modules
-    revolute, spherical = turning + modules, 2 * modules
-    freedoms = 6 * (links - (revolute + spherical) - 1) + revolute + 3 * spherical  # (20)
-    return freedoms - modules, modules
-
-
 def _chain(links: Sequence[Segment], found: Sequence[Moment], unit: float) -> list[int]:
     """The links that get a module: those on whose moment gravity does work, and those that carry their chain."""
     needed: set[int] = set()
@@ -206,75 +164,12 @@ def _beside(link: Segment, moment: Moment, unit: float, distance: float) -> Arra
     return distance * direction / np.linalg.norm(direction)
 
 
-class _Builder:
-    """Makes the auxiliary links, pseudobases and springs."""
-
-    def __init__(self, mechanism: Mechanism, links: Sequence[Segment], height: float) -> None:
-        self.mechanism, self.links, self.height = mechanism, links, height
-        tree = Tree.of(mechanism)
-        self._home = tree.poses(np.zeros((1, tree.n))).R[0]
-        self._index = tree.index
-
-    def build(
-        self,
-        modules: Mapping[int, Module],
-        whole: Sequence[Moment],
-        sprung: Sequence[int],
-        sizes: Mapping[str, tuple[float, float, float]],
-    ) -> Mechanism:
-        m = self.mechanism
-        bodies, joints, springs = list(m.bodies), list(m.joints), []
-        taken, held = Names(m.body_names), Names(joint.name for joint in m.joints)
-        auxiliaries: dict[int, str] = {}
-        for i, module in modules.items():
-            link = self.links[i]
-            parent, xyz = self._foot(link, auxiliaries)
-            auxiliaries[i] = taken.new(f"{link.name} auxiliary")
-            bodies.append(Body(auxiliaries[i], module.mass, _vec3(module.com)))
-            joints.append(
-                Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], _vec3(xyz),
-                      follows=link.name)
-            )  # fmt: skip
-            frame = self._upright(i) if module.planar else WORLD
-            up = self._up(frame)
-            base = taken.new(f"{link.name} pseudobase")
-            bodies.append(Body(base, module.coupler, _vec3(self.height / 2 * up)))
-            C = link.origin + module.centre
-            joints.append(
-                Joint(held.new(f"{link.name} pseudobase"), "parallelogram", link.name, base, _vec3(C), follows=frame)
-            )
-            if i in sprung:
-                K, a, b = sizes[link.name]
-                towards = whole[i].vector / np.linalg.norm(whole[i].vector)
-                A, B = a * up, C + b * towards  # (13), (14)
-                springs.append(Spring(f"{link.name} spring", base, _vec3(A), link.name, _vec3(B), K))
-        return replace(m, bodies=tuple(bodies), joints=tuple(joints), springs=tuple(springs))
-
-    def _foot(self, link: Segment, auxiliaries: Mapping[int, str]) -> tuple[str, Array]:
-        """Where O^_{i-1} is: a body and a point in its frame, above O_{i-1}."""
-        assert link.joint is not None
-        if link.parent in auxiliaries:
-            return auxiliaries[link.parent], link.tip
-        body = link.joint.parent  # on an upright link: up is fixed in it
-        return body, np.array(link.joint.xyz) + self.height * self._up(body)
-
-    def _upright(self, i: int) -> str:
-        """The upright link that carries link i."""
-        while not self.links[i].upright:
-            i = self.links[i].parent
-        return self.links[i].name
-
-    def _up(self, body: str) -> Array:
-        """Up in the frame of an upright body."""
-        return self._home[self._index[body]].T @ upwards(self.mechanism)
-
-
 def _sizes(
     strength: Mapping[str, float], default: Mapping[str, float], stiffness: Given, l_CA: Given, l_CB: Given
 ) -> dict[str, tuple[float, float, float]]:
     """Stiffness, l_CA and l_CB of each link's spring: K l_CA l_CB = mu g |sigma|, Eq. (16), called strength [N m]."""
     given = {
-        name: _numbers(name, value, list(strength), positive=True)
+        name: numbers(name, value, list(strength), positive=True)
         for name, value in (("stiffness", stiffness), ("l_CA", l_CA), ("l_CB", l_CB))
     }
     sizes = {}
@@ -305,46 +200,6 @@ def _planar(links: Sequence[Segment], chain: Sequence[int], asked: Sequence[str]
     return level if asked is None else list(asked)
 
 
-def _numbers(option: str, given: Given, names: Sequence[str], positive: bool) -> dict[str, float]:
-    return {name: _number(option, value, positive) for name, value in _each(option, given, names).items()}
-
-
-def _number(option: str, value: Any, positive: bool) -> float:
-    if not (isinstance(value, (int, float)) and isfinite(value) and value >= 0 and (value > 0 or not positive)):
-        raise InputError(Fault((option,), f"must be {'more than' if positive else 'at least'} 0, found {value}"))
-    return float(value)
-
-
-def _vectors(option: str, given: Given, names: Sequence[str]) -> dict[str, Array]:
-    found = {}
-    for name, value in _each(option, given, names).items():
-        if isinstance(value, (int, float)) or len(value) != 3 or not np.isfinite(value).all():
-            raise InputError(Fault((option, name), f"must be three lengths x,y,z [m] in its frame, found {value}"))
-        found[name] = np.array(value, float)
-    return found
-
-
-def _each(option: str, given: Given, names: Sequence[str]) -> dict[str, Value]:
-    """The value for each link that has one.
-
-    Raises:
-        InputError: one is given for no link that takes it.
-    """
-    if given is None:
-        return {}
-    if not isinstance(given, Mapping):
-        return dict.fromkeys(names, given)
-    for name in given:
-        if name != "*" and name not in names:
-            raise InputError(Fault((option,), f"no link that takes it {nearest(name, names)}", tuple(names)))
-    return {name: given.get(name, given.get("*")) for name in names if name in given or "*" in given}  # type: ignore[misc]
-
-
-def _vec3(v: Array) -> Vec3:
-    x, y, z = v.tolist()
-    return x, y, z
-
-
 METHOD = Method(
     "pseudobase",
     "one spring per link from an upright bar that rides along on an auxiliary chain of parallelograms: always exact",
@@ -353,14 +208,14 @@ METHOD = Method(
     design,
     {
         "stiffness": Parameter("stiffness", "of a link's spring", each=True),
-        "l_CA": Parameter("length", "from C up to the spring's end on the pseudobase (default half the link)", each=True),
+        "l_CA": Parameter("length", "from C up to the spring's end on the pseudobase", each=True),
         "l_CB": Parameter("length", "from C to its end on the link; two of the three at most", each=True),
         "centre": Parameter("length", "x,y,z of C in the link's frame", each=True, many=True),
         "height": Parameter("length", "of the auxiliary chain above the arm (default a tenth of the reach)"),
         "auxiliary": Parameter("share", "mass of an auxiliary link as a share of its link's, such as 5%", each=True),
         "auxiliary_mass": Parameter("mass", "the same, in kg in place of a share", each=True),
-        "auxiliary_com": Parameter("length", "x,y,z in the link's frame (default its mass centre)", each=True, many=True),
+        "auxiliary_com": Parameter("length", "x,y,z in the link's frame (default its com)", each=True, many=True),
         "pseudobase": Parameter("mass", "of a pseudobase (default 0)", each=True),
-        "planar": Parameter("names", "A,B,...: links with a planar four-bar (default: where the axis stays horizontal)"),
+        "planar": Parameter("names", "A,B,...: links with a planar four-bar (default: all whose axis stays level)"),
     },
 )
