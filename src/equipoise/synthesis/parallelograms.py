@@ -1,9 +1,9 @@
 """The parallelograms of Lin, Shieh and Chen (2010), Sec. 4, as bodies of a mechanism.
 
 A module is the spatial parallelogram O_{i-1} C_i D_i O^_{i-1} of link i, its auxiliary link and the coupler between the
-two, the pseudobase. It is written with two `parallelogram` joints: the auxiliary link has the orientation of link i, and
-the coupler that of what is upright. Only the line C_i D_i of a coupler on spherical joints is defined, for it may spin
-about that line: its mass centre and the spring's end lie on it.
+two, the pseudobase. It is written with two `parallelogram` joints: the auxiliary link has the orientation of link i,
+and the coupler that of what is upright. Only the line C_i D_i of a coupler on spherical joints is defined, for it may
+spin about that line: its mass centre and the spring's end lie on it.
 """
 
 from __future__ import annotations
