@@ -200,7 +200,7 @@ def _table_3() -> Iterator[Row]:
 
 
 _B_3 = (
-    "the printed b_3 is c_3, as if from the sigma_3 in print, which is zero; but l_CB,3 is not zero in print, so B_3 is "
+    "the printed b_3 is c_3, as if from the sigma_3 in print, which is zero; but the printed l_CB,3 is not, so B_3 is "
     "not C_3"
 )
 

@@ -71,10 +71,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class Moment:
-    """The point mass that stands for a link and what it carries: `mass` mu_i [kg], and mu_i sigma_i [kg m]."""
+    """The point mass that stands for a link and what it carries: `mass` mu_i [kg], and mu_i sigma_i [kg m].
+
+    `size` [kg m] is the sum of what the masses contribute, before anything cancels.
+    """
 
     mass: float
     vector: Array
+    size: float
 
     @property
     def position(self) -> Array:
@@ -137,7 +141,7 @@ def moments(links: Sequence[Segment], extra: Mapping[int, Sequence[Lump]] | None
     """
     beyond = np.zeros(len(links))  # sum_j m_j of everything from link i on
     vectors = np.zeros((len(links), 3))
-    mu = np.zeros(len(links))
+    mu, sizes = np.zeros(len(links)), np.zeros(len(links))
     for i in reversed(range(len(links))):
         link = links[i]
         own = [*link.lumps, *(extra or {}).get(i, ())]
@@ -146,10 +150,12 @@ def moments(links: Sequence[Segment], extra: Mapping[int, Sequence[Lump]] | None
         mu[i] = mass + beyond[i]  # (7), (24)
         # (8), (25) times mu_i: m_i s_i - m_i r_i is m_i times the place from O_{i-1}; -m_j r_i came from those beyond
         vectors[i] += sum((m * p for m, p in own), np.zeros(3))
+        sizes[i] += sum(m * float(np.linalg.norm(p)) for m, p in own)
         if i:
             beyond[link.parent] += beyond[i]
             vectors[link.parent] += beyond[i] * link.tip
-    return tuple(Moment(float(m), v) for m, v in zip(mu, vectors, strict=True))
+            sizes[link.parent] += beyond[i] * float(np.linalg.norm(link.tip))
+    return tuple(Moment(float(m), v, float(s)) for m, v, s in zip(mu, vectors, sizes, strict=True))
 
 
 def upwards(mechanism: Mechanism) -> Array:

@@ -152,7 +152,8 @@ def _chain(links: Sequence[Segment], found: Sequence[Moment], unit: float) -> li
 
 
 def _unit(found: Sequence[Moment]) -> float:
-    return sum(float(np.linalg.norm(moment.vector)) for moment in found)
+    """[kg m] what rounding is a share of."""
+    return sum(moment.size for moment in found)
 
 
 def _beside(link: Segment, moment: Moment, unit: float, distance: float) -> Array:
