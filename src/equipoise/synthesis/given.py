@@ -27,8 +27,9 @@ def number(option: str, value: Any, positive: bool) -> float:
     Raises:
         InputError: it is not.
     """
+    limit = "more than" if positive else "at least"
     if not (isinstance(value, (int, float)) and isfinite(value) and value >= 0 and (value > 0 or not positive)):
-        raise InputError(Fault((option,), f"must be {'more than' if positive else 'at least'} 0, found {value}"))
+        raise InputError(Fault((option,), f"must be a finite number of {limit} 0, found {value}"))
     return float(value)
 
 

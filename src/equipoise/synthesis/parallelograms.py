@@ -2,8 +2,8 @@
 
 A module is the spatial parallelogram O_{i-1} C_i D_i O^_{i-1} of link i, its auxiliary link and the coupler between the
 two, the pseudobase. It is written with two `parallelogram` joints: the auxiliary link has the orientation of link i,
-and the coupler that of what is upright. Only the line C_i D_i of a coupler on spherical joints is defined, for it may
-spin about that line: its mass centre and the spring's end lie on it.
+and the coupler that of the upright link below. Only the line C_i D_i of a coupler on spherical joints is defined, for
+it may spin about that line: its mass centre and the spring's end lie on it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..io.text import Names
 from ..kinematics import Tree
-from ..mechanism import WORLD, Body, Joint, Mechanism
+from ..mechanism import Body, Joint, Mechanism
 from ..spring import Spring, Vec3
 from .moments import Lump, Moment, Segment, upwards
 
@@ -81,7 +81,7 @@ class Builder:
                 Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], _vec3(xyz),
                       follows=link.name)
             )  # fmt: skip
-            frame = self._upright(i) if module.planar else WORLD
+            frame = self._upright(i)
             up = self._up(frame)
             base = taken.new(f"{link.name} pseudobase")
             bodies.append(Body(base, module.coupler, _vec3(self.height / 2 * up)))
