@@ -20,6 +20,7 @@ OF_THE_ZOO = {
     "parallelogram_lamp": "parallelogram_lamp",
     "geared_pair": "mirrored_pair",
 }
+OF_PAPERS = {"lin2010_arm", "lin2010_balanced"}  # test_lin2010 knows their answers
 
 
 def flat(value: Any, path: str = "") -> dict[str, Any]:
@@ -32,7 +33,7 @@ def flat(value: Any, path: str = "") -> dict[str, Any]:
 
 
 def test_every_file_has_a_known_answer() -> None:
-    assert {path.stem for path in FOLDER.glob("*.yaml")} == OF_THE_ZOO.keys()
+    assert {path.stem for path in FOLDER.glob("*.yaml")} == OF_THE_ZOO.keys() | OF_PAPERS
 
 
 @pytest.mark.parametrize("file", OF_THE_ZOO)

@@ -20,7 +20,8 @@ def expand(table: DhTable, bodies: Sequence[Body]) -> tuple[list[tuple[Body, int
     """The bodies and joints of a table, each with the row it comes from; a body's frame is the frame of its row.
 
     In the standard convention the joint's axis is the z of the frame before, so a joint moves a massless body
-    `<body>_axis`, and a fixed joint `<joint>_link` carries the body at (a, alpha) from it.
+    `<body>_axis`, and a fixed joint `<joint>_link` carries the body at (a, alpha) from it, at d along the
+    axis too where the joint turns.
 
     Args:
         bodies: as many as the table has rows.
@@ -30,17 +31,20 @@ def expand(table: DhTable, bodies: Sequence[Body]) -> tuple[list[tuple[Body, int
     parent = WORLD
     for i, (row, body) in enumerate(zip(table.rows, bodies, strict=True)):
         name = row.name if row.name is not None else f"joint_{i + 1}"
+        offset = 0.0
         child, xyz, rpy = body.name, (0.0, 0.0, row.d), (0.0, 0.0, row.theta)
         if table.convention == "modified":
             xyz = (row.a, -row.d * sin(row.alpha), row.d * cos(row.alpha))
             rpy = _rx_rz(row.alpha, row.theta)
         else:
             child = f"{body.name}_axis"
+            if row.type == "revolute":  # Rz and Tz commute: the link, which has the offset d, starts at the last frame
+                xyz, offset = (0.0, 0.0, 0.0), row.d
             all_bodies.append((Body(child), i))
         all_bodies.append((body, i))
         joints.append((Joint(name, row.type, parent, child, xyz, rpy, Z, row.range), i))
         if child != body.name:
-            link = Joint(f"{name}_link", "fixed", child, body.name, (row.a, 0.0, 0.0), (row.alpha, 0.0, 0.0))
+            link = Joint(f"{name}_link", "fixed", child, body.name, (row.a, 0.0, offset), (row.alpha, 0.0, 0.0))
             joints.append((link, i))
         parent = body.name
     return all_bodies, joints

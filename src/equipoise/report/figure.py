@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import warnings
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -48,9 +49,15 @@ def save_figure(
         InputError: another suffix, or the folder is missing or cannot be written to.
         UnsupportedError: the mechanism has loops.
     """
-    check_drawable(path)
-    suffix = Path(path).suffix.lower()
-    write_bytes(path, _render(mechanism, check(mechanism) if balance is None else balance, title, suffix))
+    judged = check(mechanism) if balance is None else balance
+
+    def draw(figure: Any) -> None:
+        _heading(figure, mechanism, judged, title)
+        _poses(figure, mechanism, judged)
+        _legend(figure, mechanism)
+        _torque(figure, judged)
+
+    render(path, SIZE, draw)
 
 
 def check_drawable(path: str | os.PathLike[str]) -> None:
@@ -67,20 +74,23 @@ def check_drawable(path: str | os.PathLike[str]) -> None:
     check_writable(path)
 
 
-def _render(mechanism: Mechanism, balance: Balance, title: str | None, suffix: str) -> bytes:
+def render(path: str | os.PathLike[str], size: tuple[float, float], draw: Callable[[Any], None]) -> None:
+    """Write a figure of `size` [in] that `draw` fills: the same bytes for the same input, whole or not at all.
+
+    Raises:
+        InputError: as `check_drawable`.
+    """
+    check_drawable(path)
     import matplotlib.style
     from matplotlib.figure import Figure
 
-    buffer = io.BytesIO()
+    suffix, buffer = Path(path).suffix.lower(), io.BytesIO()
     with matplotlib.style.context(["default", style.RC]), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph")  # a name in a script that the font lacks is no error
-        figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
-        _heading(figure, mechanism, balance, title)
-        _poses(figure, mechanism, balance)
-        _legend(figure, mechanism)
-        _torque(figure, balance)
+        figure = Figure(figsize=size, dpi=DPI, facecolor="white")
+        draw(figure)
         figure.savefig(buffer, format=suffix[1:], dpi=DPI, metadata=METADATA[suffix])
-    return buffer.getvalue()
+    write_bytes(path, buffer.getvalue())
 
 
 def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:

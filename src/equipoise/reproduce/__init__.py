@@ -1,4 +1,4 @@
-"""The source papers, reproduced: one file for each, with its data, its tables and figures, published beside computed."""
+"""The source papers, reproduced: one file for each, its tables and figures, published beside computed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from importlib import import_module
 from ..errors import Fault, InputError, nearest
 from .record import Map, Plot, Reproduction, Row
 
-PAPERS: tuple[str, ...] = ()
+PAPERS: tuple[str, ...] = ("lin2010",)
 """Keys of the papers; each names its file."""
 
 __all__ = ["PAPERS", "Map", "Plot", "Reproduction", "Row", "reproduce"]

@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..kinematics import Tree
+from ..kinematics.groups import places
 from ..mechanism import Mechanism
 
 
@@ -59,33 +60,28 @@ class Mounts:
             UnsupportedError: it has loops.
         """
         tree = Tree.of(mechanism)
-        group, offset = {0: 0}, {0: np.zeros(3)}  # rigid group (named after its root) and place in it of each body
+        place = places(tree, ("fixed",))
         members: dict[int, list[int]] = {0: [0]}
-        above: dict[int, int] = {}  # group -> the group its moving joint hangs on
+        above: dict[int, int] = {}  # group (named after its root) -> the group its moving joint hangs on
         ends: dict[int, list[np.ndarray]] = {0: []}  # joints and mass centres in each group, in the root's frame
         carrier: dict[int, int] = {}  # group -> first body that carries a moving joint
-        turn = {0: np.eye(3)}
         path = {0: 0.0}
         for link in tree.links:
-            root = group[link.parent]
-            place = offset[link.parent] + turn[link.parent] @ link.p0
+            root = place[link.parent].root
             path[link.body] = path[link.parent] + float(np.linalg.norm(link.p0))
             if link.joint.type == "fixed":
-                group[link.body], offset[link.body] = root, place
-                turn[link.body] = turn[link.parent] @ link.R0
                 members[root].append(link.body)
             else:
-                group[link.body], offset[link.body], turn[link.body] = link.body, np.zeros(3), np.eye(3)
                 members[link.body], ends[link.body], above[link.body] = [link.body], [], root
                 carrier.setdefault(root, link.parent)
-                ends[root].append(place)
+                ends[root].append(place[link.body].base)
         mass = _masses(tree)
         for body, points in mass.items():
-            ends[group[body]] += [offset[body] + turn[body] @ p for p in points]
+            ends[place[body].root] += [place[body].p + place[body].R @ p for p in points]
 
         solid = [root for root in members if root == 0 or any(b in mass for b in members[root]) or _long(ends[root])]
         chosen = {r: carrier.get(r, next((b for b in members[r] if b in mass), r)) for r in solid}
-        size = [max((float(np.linalg.norm(end - offset[chosen[r]])) for end in ends[r]), default=0.0) for r in solid]
+        size = [max((float(np.linalg.norm(end - place[chosen[r]].p)) for end in ends[r]), default=0.0) for r in solid]
         distance = tuple(tuple(_apart(a, b, above, set(solid)) for b in solid) for a in solid)
         reach = max([*path.values(), *(path[chosen[r]] + s for r, s in zip(solid, size, strict=True))])
         return Mounts(tuple(tree.names[chosen[r]] for r in solid), distance, tuple(size), reach or 1.0)

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .errors import EquipoiseWarning
+from ..errors import EquipoiseWarning
 
 if TYPE_CHECKING:
-    from .mechanism import Mechanism
-    from .synthesis.problem import Progress
+    from ..mechanism import Mechanism
+    from ..synthesis.problem import Progress
 
 
 def load(file: Path) -> Mechanism:
-    from .io import load
+    from ..io import load
 
     with shown_warnings():
         return load(file)
@@ -48,7 +48,7 @@ def progress_bar(start: str) -> Iterator[Progress]:
     """A progress bar on standard error, when that is a terminal, for work of more than a second."""
     from rich import progress
 
-    from .report.text import console
+    from ..report.text import console
 
     screen = console(stderr=True)
     columns = (progress.TextColumn("{task.description}"), progress.BarColumn(), progress.TimeElapsedColumn())
@@ -58,7 +58,7 @@ def progress_bar(start: str) -> Iterator[Progress]:
 
 
 def show(lines: Iterator[Any]) -> None:
-    from .report.text import console
+    from ..report.text import console
 
     screen = console()
     for line in lines:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from .errors import Fault, InputError, nearest
-from .synthesis import Parameter, Region
-from .units import to_si
+from ..errors import Fault, InputError, nearest
+from ..synthesis import Parameter, Region
+from ..units import to_si
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -37,7 +37,7 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     expected = "expected a share such as 1e-3 or 0.1%, or a torque such as '0.5 N m'"
     share = torque = None
     try:
-        share = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        share = _share(text)
     except ValueError:
         try:
             torque = to_si(text, "torque")
@@ -47,6 +47,10 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
+
+
+def _share(text: str) -> float:
+    return float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
 
 
 def names(text: str) -> list[str]:
@@ -138,5 +142,11 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 return int(text)
             except ValueError:
                 raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
+        case "share":
+            try:
+                return _share(text)
+            except ValueError:
+                problem = f"expected a share such as 0.05 or 5%, found '{text}'"
+                raise InputError(Fault(("--set", name), problem)) from None
         case dimension:
             return _quantity(text, dimension, f"--set {name}")

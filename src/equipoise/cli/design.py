@@ -1,0 +1,130 @@
+"""`equipoise methods` and `equipoise design`: which methods apply, and what they give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from . import terminal
+from .app import File, Json, app
+
+
+@app.command()
+def methods(file: File, json: Json = False) -> None:
+    """Which methods apply, and why the others do not.
+
+    Example: [bold]equipoise methods ur5.urdf[/bold]
+    """
+    from ..synthesis import METHODS
+
+    mechanism = terminal.load(file)
+    if json:
+        rows = [
+            {
+                "method": m.name,
+                "applies": not m.applies(mechanism),
+                "reasons": m.applies(mechanism),
+                "summary": m.summary,
+                "source": m.source,
+                "parameters": {name: parameter.help for name, parameter in m.parameters.items()},
+            }
+            for m in METHODS.values()
+        ]
+        terminal.print_json(rows)
+    else:
+        from ..report.text import methods_table
+
+        terminal.show(iter([methods_table(mechanism)]))
+
+
+@app.command()
+def design(
+    context: typer.Context,
+    file: File,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the design as a mechanism file")] = None,
+    plot: Annotated[Path | None, typer.Option(help="write a figure: .svg, .png or .pdf")] = None,
+    method: Annotated[str, typer.Option(help="see `equipoise methods`")] = "convex",
+    set_: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="a method's parameter")] = None,
+    span: Annotated[int, typer.Option(min=1, help="springs join bodies at most this many moving joints apart")] = 2,
+    pairs: Annotated[str | None, typer.Option(metavar="A:B,...", help="the pairs of bodies instead of a span")] = None,
+    radius: Annotated[
+        str | None, typer.Option(help="attachments within this of each body's origin (default: from each link's size)")
+    ] = None,
+    region: Annotated[
+        list[str] | None, typer.Option(metavar="BODY=RADIUS", help="another radius for one body; may be repeated")
+    ] = None,
+    box: Annotated[bool, typer.Option("--box", help="regions are boxes of +-radius, not balls")] = False,
+    springs: Annotated[int | None, typer.Option(min=1, help="at most this many (default: as few as do)")] = None,
+    objective: Annotated[str, typer.Option(help="rms or peak torque")] = "rms",
+    joints: Annotated[str | None, typer.Option(metavar="A,B,...", help="the joints that count (default: all)")] = None,
+    front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
+    exact: Annotated[bool, typer.Option("--exact", help="insist on exact balance; exit code 1 if infeasible")] = False,
+    unlimited: Annotated[
+        bool, typer.Option("--unlimited", help="all turning joints over +-180 deg, whatever their range")
+    ] = False,
+    keep: Annotated[
+        bool, typer.Option("--keep", help="the file's own springs stay (default: they are replaced)")
+    ] = False,
+    samples: Annotated[
+        int | None, typer.Option(min=1, help="random poses to judge on (default: exact averages where possible)")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="of random starts and poses")] = 0,
+    json: Json = False,
+) -> None:
+    """Choose springs, and say how far from the best possible they are.
+
+    Example: [bold]equipoise design ur5.urdf --span 3 --radius 150mm --springs 3 -o balanced.yaml --plot ur5.svg[/bold]
+    """
+    from ..io import check_savable, save
+    from ..report.figure import check_drawable, save_figure
+    from ..synthesis import METHODS
+    from ..synthesis import design as run
+    from . import options
+
+    given: dict[str, Any] = {
+        "span": span,
+        "pairs": None if pairs is None else options.pairs(pairs),
+        "radius": None if radius is None else options.length(radius, "--radius"),
+        "shape": "box" if box else "ball",
+        "regions": options.regions(region or [], box),
+        "springs": springs,
+        "objective": objective,
+        "joints": None if joints is None else options.names(joints),
+        "samples": samples,
+        "unlimited": unlimited,
+        "exact": exact,
+        "front": front,
+        "keep": keep,
+        "seed": seed,
+    }
+    # a method knows its own defaults, and is told only what was asked for
+    asked = {"regions": "region", "shape": "box"}
+    given = {name: value for name, value in given.items() if terminal.typed(context, asked.get(name, name))}
+    if method in METHODS:
+        given |= options.settings(set_ or [], METHODS[method].parameters)
+    mechanism = terminal.load(file)
+    if output:
+        check_savable(output)  # before the work, not after it
+    if plot:
+        check_drawable(plot)
+    if mechanism.springs and not keep:
+        terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
+    with terminal.progress_bar("designing") as report:
+        found = run(mechanism, method, progress=report, **given)
+        report("judging the design", 0.0)
+        balance = found.balance
+        if output:
+            save(found.mechanism, output)
+        if plot:
+            report("drawing", 0.0)
+            save_figure(found.mechanism, plot, balance=balance)
+    if json:
+        terminal.print_json(found.to_dict())
+    else:
+        from ..report.text import design_lines
+
+        terminal.show(design_lines(found))
+    for path in filter(None, (output, plot)):
+        terminal.say(f"wrote {path}")

@@ -1,0 +1,65 @@
+"""`equipoise reproduce`: the papers' tables and figures, published beside computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import InputError
+from . import terminal
+from .app import Json, app
+
+if TYPE_CHECKING:
+    from ..reproduce import Reproduction
+
+
+@app.command()
+def reproduce(
+    paper: Annotated[str | None, typer.Argument(help="which one (default: all)", show_default=False)] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="folder for tables and figures")] = None,
+    json: Json = False,
+) -> None:
+    """The papers' tables and figures, published beside computed. Exit code 1 when a number differs unexplained.
+
+    Example: [bold]equipoise reproduce lin2010 -o lin2010[/bold]
+    """
+    from .. import reproduce as papers
+    from ..report.published import reproduction_lines
+
+    found = []
+    with terminal.progress_bar("reproducing") as report:
+        for key in papers.PAPERS if paper is None else (paper,):
+            report(f"reproducing {key}", 0.0)
+            found.append(papers.reproduce(key))
+        written = [] if output is None else _write(found, output)
+    rows = [row for one in found for row in one.rows]
+    if json:
+        terminal.print_json([row.to_dict() for row in rows])
+    else:
+        for one in found:
+            terminal.show(reproduction_lines(one))
+    for path in written:
+        terminal.say(f"wrote {path}")
+    raise typer.Exit(1 if any(row.verdict == "differs" for row in rows) else 0)
+
+
+def _write(found: list[Reproduction], folder: Path) -> list[Path]:
+    """For each paper its table as Markdown, and its figures."""
+    from ..io.files import write_text
+    from ..report.plots import save_plot
+    from ..report.published import reproduction_markdown
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made: {(error.strerror or str(error)).lower()}") from error
+    written = []
+    for one in found:
+        written.append(folder / f"{one.paper}.md")
+        write_text(written[-1], reproduction_markdown(one))
+        for figure in one.figures:
+            written.append(folder / f"{one.paper}-{figure.name}.png")
+            save_plot(figure, written[-1])
+    return written

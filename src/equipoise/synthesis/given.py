@@ -1,0 +1,59 @@
+"""Options that may differ from link to link: one value for all, or a value for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import Fault, InputError, nearest
+
+Value = float | Sequence[float]
+Given = Value | Mapping[str, Value] | None
+"""One value for all links, or link -> value with the value for all others under "*"."""
+
+
+def numbers(option: str, given: Given, names: Sequence[str], positive: bool) -> dict[str, float]:
+    """The number for each link that has one, more than 0 or at least 0."""
+    return {name: number(option, value, positive) for name, value in _each(option, given, names).items()}
+
+
+def number(option: str, value: Any, positive: bool) -> float:
+    """The value, when it is a finite number more than 0, or at least 0.
+
+    Raises:
+        InputError: it is not.
+    """
+    limit = "more than" if positive else "at least"
+    if not (isinstance(value, (int, float)) and isfinite(value) and value >= 0 and (value > 0 or not positive)):
+        raise InputError(Fault((option,), f"must be a finite number of {limit} 0, found {value}"))
+    return float(value)
+
+
+def vectors(option: str, given: Given, names: Sequence[str]) -> dict[str, Array]:
+    """The point (3,) [m] for each link that has one."""
+    found = {}
+    for name, value in _each(option, given, names).items():
+        if isinstance(value, (int, float)) or len(value) != 3 or not np.isfinite(value).all():
+            raise InputError(Fault((option, name), f"must be three lengths x,y,z [m] in its frame, found {value}"))
+        found[name] = np.array(value, float)
+    return found
+
+
+def _each(option: str, given: Given, names: Sequence[str]) -> dict[str, Value]:
+    """The value for each link that has one.
+
+    Raises:
+        InputError: one is given for no link that takes it.
+    """
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(names, given)
+    for name in given:
+        if name != "*" and name not in names:
+            raise InputError(Fault((option,), f"no link that takes it {nearest(name, names)}", tuple(names)))
+    return {name: given.get(name, given.get("*")) for name in names if name in given or "*" in given}  # type: ignore[misc]

@@ -1,0 +1,222 @@
+"""The method `pseudobase`: one spring per link, from a body that stays upright and rides along.
+
+P.-Y. Lin, W.-B. Shieh and D.-Z. Chen, "Design of a gravity-balanced general spatial serial-type manipulator",
+J. Mechanisms Robotics 2 (2010). Beside the arm runs a chain of auxiliary links, each parallel to its link and `height`
+above it; the bar C_i D_i between the two, the pseudobase, therefore stays vertical, and a spring from it balances
+link i as one from the ground balances a link that is hinged to the ground. Here the chain branches where the arm does;
+the first links, which only turn about the vertical, carry the foot of the chain themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import sqrt
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import Fault, InputError, nearest
+from ..mechanism import Mechanism
+from .design import Design
+from .given import Given, number, numbers, vectors
+from .method import Method, Parameter
+from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
+from .mounts import Mounts
+from .parallelograms import Builder, Module, mobility
+
+
+def design(
+    mechanism: Mechanism,
+    *,
+    stiffness: Given = None,
+    l_CA: Given = None,
+    l_CB: Given = None,
+    centre: Given = None,
+    height: float | None = None,
+    auxiliary: Given = 0.0,
+    auxiliary_mass: Given = None,
+    auxiliary_com: Given = None,
+    pseudobase: Given = 0.0,
+    planar: Sequence[str] | None = None,
+) -> Design:
+    """One spring for each link on whose moment gravity does work. The mechanism's own springs are replaced.
+
+    All but `height` and `planar` may differ from link to link. A link is named by the body that stands for it, in
+    whose frame its points are given (see `Segment`).
+
+    Args:
+        stiffness, l_CA, l_CB: of a link's spring [N/m, m, m]: at most two, the third follows from Eq. (16). By default
+            both lengths are half the link's size, or equal where only the stiffness is given.
+        centre: C_i [m]; by default off the joint's axis by half the link's size, on the side of its moment.
+        height: of the auxiliary chain above the arm [m]; by default a tenth of the arm's reach.
+        auxiliary: mass of an auxiliary link as a share of its link's own.
+        auxiliary_mass: the same [kg], in place of the share.
+        auxiliary_com: the point of the link that its mass centre is above [m]; by default the link's own mass centre.
+        pseudobase: mass of a pseudobase [kg].
+        planar: links whose parallelogram is a planar four-bar; by default those whose axis stays horizontal.
+
+    Raises:
+        InputError: a bad value.
+    """
+    bare = mechanism.with_springs(())
+    links = segments(bare)
+    primary = moments(links)
+    unit = _unit(primary)
+    chain = _chain(links, primary, unit)
+    names = [links[i].name for i in chain]
+    mounts = Mounts.of(bare)
+    height = mounts.reach / 10 if height is None else number("height", height, positive=True)
+    flat = _planar(links, chain, planar)
+    centres = vectors("centre", centre, names)
+    shares = numbers("auxiliary", auxiliary, names, positive=False)
+    weights = numbers("auxiliary_mass", auxiliary_mass, names, positive=False)
+    coms = vectors("auxiliary_com", auxiliary_com, names)
+    couplers = numbers("pseudobase", pseudobase, names, positive=False)
+
+    modules: dict[int, Module] = {}
+    for i in chain:
+        link = links[i]
+        own = sum(m for m, _ in link.lumps)
+        middle = sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else np.zeros(3)
+        C = centres.get(link.name)
+        C = _beside(link, primary[i], unit, mounts.default_radius(link.name)) if C is None else C - link.origin
+        if np.linalg.norm(np.cross(link.axis, C)) <= 1e-9:
+            raise InputError(Fault(("centre", link.name), "is on the joint's axis, where a parallelogram has no width"))
+        com = coms.get(link.name)
+        modules[i] = Module(
+            centre=C,
+            mass=weights.get(link.name, shares.get(link.name, 0.0) * own),
+            com=middle if com is None else com - link.origin,
+            coupler=couplers.get(link.name, 0.0),
+            planar=link.name in flat,
+        )
+    whole = moments(links, {i: module.lumps for i, module in modules.items()})  # (24)-(25)
+    sprung = [i for i in chain if links[i].works(whole[i].vector, _unit(whole))]
+    g = float(np.linalg.norm(bare.gravity))
+    sizes = _sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},
+                   {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
+                   stiffness, l_CA, l_CB)  # fmt: skip
+    balanced = Builder(bare, links, height).build(modules, whole, sprung, sizes)
+    turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
+    free = {
+        "stiffness": {name: K for name, (K, _, _) in sizes.items()},
+        "l_CA": {name: a for name, (_, a, _) in sizes.items()},
+        "centre": {links[i].name: (links[i].origin + modules[i].centre).tolist() for i in chain},
+        "height": height,
+        "auxiliary_mass": {links[i].name: modules[i].mass for i in chain},
+        "auxiliary_com": {links[i].name: (links[i].origin + modules[i].com).tolist() for i in chain},
+        "pseudobase": {links[i].name: modules[i].coupler for i in chain},
+        "planar": flat,
+        "mobility": {"active": turning, "idle": idle},
+    }
+    return Design.of(balanced, "pseudobase", free)
+
+
+def applies(mechanism: Mechanism) -> list[str]:
+    """Why the method does not apply; empty when it does."""
+    if mechanism.loops:
+        return ["it has loops: the auxiliary chain needs a tree"]
+    if not any(mechanism.gravity):
+        return ["there is no gravity"]
+    reasons = [
+        f"joint '{joint.name}' is {joint.type}: {what}"
+        for joint in mechanism.joints
+        for what in (_UNFIT.get(joint.type),)
+        if what
+    ]
+    if reasons:
+        return reasons
+    links = segments(mechanism.with_springs(()))
+    reasons = list(slide_faults(mechanism.with_springs(()), links))
+    found = moments(links)
+    if not reasons and not _chain(links, found, _unit(found)):
+        reasons.append("gravity does no work on any link: nothing to balance")
+    return reasons
+
+
+_UNFIT = {
+    "spherical": "a module has one revolute joint in common with the arm; write it as three revolute joints",
+    "parallelogram": "its child does not turn with the link that carries it; give the arm without its parallelograms",
+}
+
+
+def _chain(links: Sequence[Segment], found: Sequence[Moment], unit: float) -> list[int]:
+    """The links that get a module: those on whose moment gravity does work, and those that carry their chain."""
+    needed: set[int] = set()
+    for i, link in enumerate(links):
+        if not link.upright and link.works(found[i].vector, unit):
+            while not links[i].upright:
+                needed.add(i)
+                i = links[i].parent
+    return sorted(needed)
+
+
+def _unit(found: Sequence[Moment]) -> float:
+    """[kg m] what rounding is a share of."""
+    return sum(moment.size for moment in found)
+
+
+def _beside(link: Segment, moment: Moment, unit: float, distance: float) -> Array:
+    """A point at a distance from the joint's axis, on the side of the moment where it has one."""
+    sideways = np.eye(3) - np.outer(link.axis, link.axis)
+    direction = sideways @ moment.vector
+    if np.linalg.norm(direction) <= NOTHING * unit:
+        direction = sideways[:, np.argmin(np.abs(link.axis))]
+    return distance * direction / np.linalg.norm(direction)
+
+
+def _sizes(
+    strength: Mapping[str, float], default: Mapping[str, float], stiffness: Given, l_CA: Given, l_CB: Given
+) -> dict[str, tuple[float, float, float]]:
+    """Stiffness, l_CA and l_CB of each link's spring: K l_CA l_CB = mu g |sigma|, Eq. (16), called strength [N m]."""
+    given = {
+        name: numbers(name, value, list(strength), positive=True)
+        for name, value in (("stiffness", stiffness), ("l_CA", l_CA), ("l_CB", l_CB))
+    }
+    sizes = {}
+    for link, moment in strength.items():
+        K, a, b = (given[name].get(link) for name in ("stiffness", "l_CA", "l_CB"))
+        if K is not None and a is not None and b is not None:
+            raise InputError(
+                Fault(("stiffness", link), f"with l_CA and l_CB it is given already: {moment / (a * b):.6g} N/m")
+            )
+        if K is None:
+            a, b = default[link] if a is None else a, default[link] if b is None else b
+            K = moment / (a * b)
+        elif a is None:
+            b = sqrt(moment / K) if b is None else b
+            a = moment / (K * b)
+        else:
+            b = moment / (K * a)
+        sizes[link] = K, a, b
+    return sizes
+
+
+def _planar(links: Sequence[Segment], chain: Sequence[int], asked: Sequence[str] | None) -> list[str]:
+    level = [links[i].name for i in chain if links[i].level]
+    for name in asked or ():
+        if name not in level:
+            raise InputError(Fault(("planar",), f"no link with a joint that stays horizontal {nearest(name, level)}",
+                                   tuple(level)))  # fmt: skip
+    return level if asked is None else list(asked)
+
+
+METHOD = Method(
+    "pseudobase",
+    "one spring per link from an upright bar that rides along on an auxiliary chain of parallelograms: always exact",
+    "Lin, Shieh and Chen (2010), Eqs. (7)-(8), (13)-(16), (24)-(25)",
+    applies,
+    design,
+    {
+        "stiffness": Parameter("stiffness", "of a link's spring", each=True),
+        "l_CA": Parameter("length", "from C up to the spring's end on the pseudobase", each=True),
+        "l_CB": Parameter("length", "from C to its end on the link; two of the three at most", each=True),
+        "centre": Parameter("length", "x,y,z of C in the link's frame", each=True, many=True),
+        "height": Parameter("length", "of the auxiliary chain above the arm (default a tenth of the reach)"),
+        "auxiliary": Parameter("share", "mass of an auxiliary link as a share of its link's, such as 5%", each=True),
+        "auxiliary_mass": Parameter("mass", "the same, in kg in place of a share", each=True),
+        "auxiliary_com": Parameter("length", "x,y,z in the link's frame (default its com)", each=True, many=True),
+        "pseudobase": Parameter("mass", "of a pseudobase (default 0)", each=True),
+        "planar": Parameter("names", "A,B,...: links with a planar four-bar (default: all whose axis stays level)"),
+    },
+)
