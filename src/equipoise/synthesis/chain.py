@@ -7,17 +7,17 @@ together by fixed joints are one link, point masses included.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
-from ..energy.potential import lumped_masses
 from ..errors import UnsupportedError
 from ..kinematics import Tree
-from ..kinematics.tree import Link
 from ..mechanism import Mechanism
 from ..spring import Vec3
+from .moments import segments
 from .mounts import Mounts
 
 SAME = 1e-9  # of the mechanism's reach: closer points coincide
@@ -49,7 +49,7 @@ class Pivot:
 
 
 @dataclass(frozen=True)
-class Segment:
+class ChainLink:
     """A link of the chain, at q = 0 in world coordinates.
 
     Attributes:
@@ -71,15 +71,18 @@ class Segment:
     pivots: tuple[Pivot, ...]
 
     @property
-    def along(self) -> Array:
-        """(3,) the part of `moment` on the line to the distal joint."""
-        if self.length is None:
-            return self.moment
-        return (self.moment @ self.length) / (self.length @ self.length) * self.length
+    def along(self) -> float:
+        """The part of `moment` on the line to the distal joint, as a multiple of `length` [kg]."""
+        return 0.0 if self.length is None else float(self.moment @ self.length / (self.length @ self.length))
+
+    @property
+    def across(self) -> Array:
+        """(3,) the rest of `moment` [kg m]; of the last link, all of it."""
+        return self.moment if self.length is None else self.moment - self.along * self.length
 
     def off_line(self, near: float) -> bool:
         """Whether its mass centre is off that line by more than `near` [m]."""
-        return float(np.linalg.norm(self.moment - self.along)) > near * self.mass
+        return float(np.linalg.norm(self.across)) > near * self.mass
 
     @property
     def free(self) -> bool:
@@ -90,10 +93,11 @@ class Segment:
 
 @dataclass(frozen=True)
 class Chain:
-    """The links of an open chain, ground first; `near` [m] is what counts as no distance."""
+    """The links of an open chain on the upright body `base`; `near` [m] is what counts as no distance."""
 
     mechanism: Mechanism
-    links: tuple[Segment, ...]
+    base: str
+    links: tuple[ChainLink, ...]
     near: float
 
     @property
@@ -107,14 +111,11 @@ class Chain:
         return -np.array(self.mechanism.gravity) / self.weight
 
     @property
-    def loaded(self) -> tuple[Segment, ...]:
+    def loaded(self) -> tuple[ChainLink, ...]:
         """The links up to the last with a moment: what is beyond is balanced about its own joint."""
-        last = max((i for i, x in enumerate(self.links) if np.linalg.norm(x.moment) > self._nothing), default=-1)
+        nothing = self.near * sum(link.mass for link in self.links)
+        last = max((i for i, x in enumerate(self.links) if np.linalg.norm(x.moment) > nothing), default=-1)
         return self.links[: last + 1]
-
-    @property
-    def _nothing(self) -> float:
-        return self.near * sum(link.mass for link in self.links)
 
     def on(self, body: str, point: Array) -> Vec3:
         """The place of a point (3,), given in the world at q = 0, in the frame of a body [m]."""
@@ -140,71 +141,91 @@ def reasons(mechanism: Mechanism) -> list[str]:
         found.append("there is no gravity")
     if found:
         return found
-    tree = Tree.of(mechanism)
-    moving, root = _groups(tree)
+    moving = segments(mechanism.with_springs(()))[1:]
     if not moving:
         return ["no joint moves"]
     for link in moving:
-        rivals = [other.joint.name for other in moving if root[other.parent] == root[link.parent]]
+        rivals = [other.joint.name for other in moving if other.parent == link.parent and other.joint]
         if len(rivals) > 1:
             return [f"it branches: joints {' and '.join(repr(name) for name in rivals)} start from one link"]
-    return [] if chain(mechanism).loaded else ["gravity loads no joint"]
+    try:
+        return [] if chain(mechanism).loaded else ["gravity loads no joint"]
+    except UnsupportedError as error:
+        return [str(error)]
 
 
 def chain(mechanism: Mechanism) -> Chain:
-    """The chain of a mechanism for which `reasons` finds none against it.
+    """The chain of a mechanism whose joints `reasons` accepts.
 
     Where a link's mass centre is in the plane of its proximal joint and the hinge at its far end, the far joint's
     centre is the point of that hinge's axis that is in line with both; else it is the joint's origin.
+
+    Raises:
+        UnsupportedError: two joints turn about one point, and the mass between them does not lie there.
     """
+    mechanism = mechanism.with_springs(())
     tree = Tree.of(mechanism)
     zero = tree.poses(np.zeros((1, tree.n)))
     near = SAME * Mounts.of(mechanism).reach
-    moving, root = _groups(tree)
-    mass, first = np.zeros(len(tree.names)), np.zeros((len(tree.names), 3))
-    for body, m, p in lumped_masses(mechanism.with_springs(())):
-        i = tree.index[body]
-        mass[root[i]] += m
-        first[root[i]] += m * zero.point(i, p)[0]
-
-    joints: list[tuple[list[Pivot], Pivot, int]] = []  # hinges, what they share, the body beyond
+    ground, *moving = segments(mechanism)
+    stages: list[_Stage] = []
     for link in moving:
-        own = Pivot(zero.p[0, link.body], None)
-        if link.joint.type == "revolute":
-            own = Pivot(own.p, zero.R[0, link.body] @ link.motions[0].axis)
-        if joints:
-            hinges, shared, between = joints[-1]
-            m, centre = mass[between], first[between] / (mass[between] or 1.0)
-            meeting = shared.common(own, near)
-            still = m == 0 or (meeting is not None and meeting.e is None and meeting.off(centre) <= near)
-            if meeting is not None and (still or own.off(centre) <= near):
-                if m and own.off(centre) <= near:  # a mass on the next axis is as good as beyond it
-                    mass[link.body] += m
-                    first[link.body] += first[between]
-                joints[-1] = ([*hinges, own], meeting, link.body)
-                continue
-        joints.append(([own], own, link.body))
-    return Chain(mechanism, tuple(_segments(tree, joints, mass, first, near)), near)
+        R, p = zero.R[0, tree.index[link.name]], zero.p[0, tree.index[link.name]]
+        at = p + R @ link.origin
+        hinge = link.joint is not None and link.joint.type == "revolute"
+        own = Pivot(at, R @ link.axis / np.linalg.norm(link.axis) if hinge else None)
+        lumps = () if link.upright else link.lumps  # an upright link's height is constant
+        mass = sum(m for m, _ in lumps)
+        first = sum((m * (at + R @ r) for m, r in lumps), np.zeros(3))
+        stage = _Stage(link.name, link.upright, (own,), own, mass, first)
+        merged = stages[-1].merged(stage, near) if stages else None
+        stages[-1:] = [merged] if merged else [*stages[-1:], stage]
+    base = ground.name
+    while stages and stages[0].upright:
+        base = stages.pop(0).body
+    return Chain(mechanism, base, tuple(_links(stages, near)), near)
 
 
-def _segments(
-    tree: Tree, joints: list[tuple[list[Pivot], Pivot, int]], mass: Array, first: Array, near: float
-) -> list[Segment]:
-    beyond = np.cumsum([mass[body] for _, _, body in joints][::-1])[::-1]
-    segments, centre = [], joints[0][1].p
-    for i, (hinges, _, body) in enumerate(joints):
-        m = float(mass[body])
-        com = first[body] / m - centre if m else np.zeros(3)
+@dataclass(frozen=True)
+class _Stage:
+    """A joint and the link it turns: its hinges, what they share, mass [kg] and first moment [kg m] in the world."""
+
+    body: str
+    upright: bool
+    hinges: tuple[Pivot, ...]
+    shared: Pivot
+    mass: float
+    first: Array
+
+    def merged(self, other: _Stage, near: float) -> _Stage | None:
+        """This and the next as one joint, where they turn about one point or line and the mass between allows it."""
+        meeting = self.shared.common(other.shared, near)
+        if meeting is None:
+            return None
+        centre = self.first / (self.mass or 1.0)
+        on_axis = self.mass > 0 and other.shared.off(centre) <= near  # as good as beyond it
+        if not (self.mass == 0 or on_axis or (meeting.e is None and meeting.off(centre) <= near)):
+            return None
+        mass, first = (self.mass, self.first) if on_axis else (0.0, np.zeros(3))
+        hinges = (*self.hinges, *other.hinges)
+        return _Stage(other.body, other.upright, hinges, meeting, other.mass + mass, other.first + first)
+
+
+def _links(stages: list[_Stage], near: float) -> Iterator[ChainLink]:
+    beyond = np.cumsum([stage.mass for stage in stages][::-1])[::-1]
+    centre = stages[0].shared.p if stages else np.zeros(3)
+    for i, stage in enumerate(stages):
+        com = stage.first / stage.mass - centre if stage.mass else np.zeros(3)
         length = None
-        if i + 1 < len(joints):
-            length = _in_line(joints[i + 1][1], centre, com, near) - centre
+        moment = stage.mass * com
+        if i + 1 < len(stages):
+            length = _in_line(stages[i + 1].shared, centre, com, near) - centre
             if np.linalg.norm(length) <= near:
-                names = f"'{tree.names[body]}' and '{tree.names[joints[i + 1][2]]}'"
+                names = f"'{stage.body}' and '{stages[i + 1].body}'"
                 raise UnsupportedError(f"links {names} turn about one point, but the mass between is off it")
-        moment = m * com + (0.0 if length is None else beyond[i + 1] * length)
-        segments.append(Segment(tree.names[body], centre, length, m, com, moment, tuple(hinges)))
+            moment = moment + beyond[i + 1] * length
+        yield ChainLink(stage.body, centre, length, stage.mass, com, moment, stage.hinges)
         centre = centre if length is None else centre + length
-    return segments
 
 
 def _in_line(pivot: Pivot, centre: Array, com: Array, near: float) -> Array:
@@ -215,14 +236,3 @@ def _in_line(pivot: Pivot, centre: Array, com: Array, near: float) -> Array:
     (along, aside), *_ = np.linalg.lstsq(plane, com, rcond=None)
     off = np.linalg.norm(plane @ (along, aside) - com)
     return pivot.p + aside / along * pivot.e if off <= near and abs(along) > SAME else pivot.p
-
-
-def _groups(tree: Tree) -> tuple[list[Link], dict[int, int]]:
-    """The links that move, parents first, and the body that each rigid group of bodies is named after."""
-    root, moving = {0: 0}, []
-    for link in tree.links:
-        fixed = link.joint.type == "fixed"
-        root[link.body] = root[link.parent] if fixed else link.body
-        if not fixed:
-            moving.append(link)
-    return moving, root

@@ -21,15 +21,17 @@ def numbers(option: str, given: Given, names: Sequence[str], positive: bool) -> 
     return {name: number(option, value, positive) for name, value in _each(option, given, names).items()}
 
 
-def number(option: str, value: Any, positive: bool) -> float:
-    """The value, when it is a finite number more than 0, or at least 0.
+def number(option: str, value: Any, positive: bool | None) -> float:
+    """The value, when it is a finite number more than 0, at least 0, or with None of either sign but not 0.
 
     Raises:
         InputError: it is not.
     """
-    limit = "more than" if positive else "at least"
-    if not (isinstance(value, (int, float)) and isfinite(value) and value >= 0 and (value > 0 or not positive)):
-        raise InputError(Fault((option,), f"must be a finite number of {limit} 0, found {value}"))
+    limit = {True: "number of more than 0", False: "number of at least 0", None: "number other than 0"}[positive]
+    allowed = isinstance(value, (int, float)) and isfinite(value)
+    allowed = allowed and {True: value > 0, False: value >= 0, None: value != 0}[positive]
+    if not allowed:
+        raise InputError(Fault((option,), f"must be a finite {limit}, found {value}"))
     return float(value)
 
 
