@@ -167,7 +167,7 @@ def _sign_of_a2(arm: TwoLinks, lift: float | None, layout: str | None, known: Ma
 def _layout(arm: TwoLinks, asked: str | None, a2: int, known: Mapping[str, float]) -> str:
     """The layout asked for, or the first that suits the signs of the values given; `a2` is a sign."""
     b2 = a2 * _sign(arm.S2)  # second line of (14) and (15), k2 being positive
-    why = f"with a2 {_than(a2)} 0, k2 a2 b2 = m2 g h2 = {arm.S2:.6g} N m (15) gives b2 {_than(b2)} 0"
+    why = f"with a2 {_than(a2)} 0, k2 a2 b2 = m2 g h2 = {arm.S2:.6g} N m (14) gives b2 {_than(b2)} 0"
     fit = [name for name, sign in LAYOUTS.items() if sign[2] == b2]
     if asked is not None and asked not in fit:
         raise InfeasibleError(
