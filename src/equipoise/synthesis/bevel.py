@@ -11,26 +11,26 @@ N roll +- pitch, wherever its ends are, and gravity only roll +- pitch, so that 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, pi, sin
 
 import numpy as np
 
 from ..arrays import Array
-from ..balance import check
 from ..errors import Fault, InfeasibleError, InputError
 from ..io.text import Names
 from ..kinematics import Tree
 from ..kinematics.sampling import bounds
-from ..mechanism import Body, Coupling, Joint, Mechanism, PointMass
+from ..mechanism import Body, Coupling, Joint, Mechanism
 from ..spring import Spring, Vec3
 from .design import Design
 from .differential import ARRANGEMENTS, SIDES, differential
-from .given import Given, number, numbers, spring_sizes, vectors
+from .given import Given, number, numbers, spring_sizes
 from .margin import torque_margin
 from .method import Method, Parameter
 from .mounts import Mounts
+from .payload import Payload
 from .shoulder import Shoulder, find
 
 NODES = 64  # of the quadrature over each joint's range
@@ -90,8 +90,8 @@ def design(
     masses = {side: 0.0 for side in SIDES} | numbers("disk_mass", disk_mass, SIDES, positive=False)
     J = differential(arrangement, ratio)
     geared, disks = _with_disks(bare, first, J, masses, width)
-    low, high, place = _payload(first, payload, payload_at)
-    loaded = _loaded(geared, first, (low + high) / 2, place)
+    carried = Payload.of(first, payload, payload_at)
+    loaded = carried.on(geared, carried.middle)
     s = _shoulder(loaded)
 
     cosines = _cosines(loaded, s, J)
@@ -123,8 +123,10 @@ def design(
         "workspace": workspace,
     }
     if payload is not None:
-        free |= {"payload": [low, high] if high > low else [low], "payload_at": place.tolist()}
-        free |= _payload_rule(geared, made, s, (low, high), place, free["b"], free["h"])
+        free |= {"payload": carried.span, "payload_at": carried.place.tolist()}
+        free["payload_rule"] = _payload_rule(geared, carried, s, free["b"], free["h"])
+        if carried.high > carried.low:
+            free["payload_residual"] = carried.residual(geared, made.springs)
     if ratio != 1:
         free["approximate"] = (
             f"springs give terms in {ratio:g} roll +- pitch, gravity has roll +- pitch: exact with a gear ratio of 1 "
@@ -228,58 +230,21 @@ def _roll_spring(s: Shoulder, size: tuple[float, float, float]) -> Spring:
     return Spring("roll spring", s.roll.joint.parent, _vec3(A), s.roll.name, _vec3(B), k)
 
 
-def _payload(
-    s: Shoulder, masses: Sequence[float] | None, place: Sequence[float] | None
-) -> tuple[float, float, Array]:
-    """Smallest and largest payload [kg], and where it is in the frame of the pitch link [m]."""
-    own = sum(m for m, _ in s.pitch.lumps)
-    middle = s.pitch.origin + (sum((m * p for m, p in s.pitch.lumps), np.zeros(3)) / own if own else 0.0)
-    at = vectors("payload_at", {"*": place}, [s.pitch.name])[s.pitch.name] if place is not None else middle
-    if masses is None:
-        return 0.0, 0.0, at
-    if len(masses) not in (1, 2):
-        raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {list(masses)}"))
-    low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
-    if high < low:
-        raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
-    return low, high, at
-
-
-def _loaded(m: Mechanism, s: Shoulder, mass: float, place: Array) -> Mechanism:
-    if not mass:
-        return m
-    name = Names(point.name for point in m.masses).new("payload")
-    return m.with_masses((*m.masses, PointMass(name, s.pitch.name, mass, _vec3(place))))
-
-
 def _payload_rule(
-    geared: Mechanism,
-    made: Mechanism,
-    s: Shoulder,
-    span: tuple[float, float],
-    place: Array,
-    b: dict[str, float],
-    h: dict[str, float],
-) -> dict[str, object]:
-    """What to move for a payload, k unchanged; and what a fixed design leaves at the ends of a range.
-
-    The residual torque is linear in the payload less the balanced one, at every pose. So its peak is the same at both
-    ends when the middle is balanced, and, by the triangle inequality, no fixed springs leave less at the worse end.
-    """
+    geared: Mechanism, carried: Payload, s: Shoulder, b: Mapping[str, float], h: Mapping[str, float]
+) -> dict[str, dict[str, float]]:
+    """What to move for a payload, k unchanged: either b or h, from k b h = m g l / 2, and how far to turn B about O."""
     u = s.pitch_moment / np.linalg.norm(s.pitch_moment)
-    rule: dict[str, dict[str, dict[str, float]]] = {}
-    for mass in sorted({0.0, *span}):
-        moment = (s_mass := _shoulder(_loaded(geared, s, mass, place))).pitch_moment
-        key, share = f"{mass:g} kg", s_mass.weight / s.weight
-        rule[key] = {f"b.{side} [m]": b[side] * share for side in SIDES}  # k b h = m g l / 2
-        rule[key] |= {f"or h.{side} [m]": h[side] * share for side in SIDES}
-        rule[key]["turn [rad]"] = atan2(float(s.pitch.axis @ np.cross(u, moment)), float(u @ moment))
-    found: dict[str, object] = {"payload_rule": rule}
-    low, high = span
-    if high > low:
-        worst = check(_loaded(geared, s, high, place).with_springs(made.springs))
-        found["payload_residual"] = dict(zip(made.coordinates, worst.residual.max.tolist(), strict=True))
-    return found
+    rule = {}
+    for mass in sorted({0.0, carried.low, carried.high}):
+        there = _shoulder(carried.on(geared, mass))
+        share, moment = there.weight / s.weight, there.pitch_moment
+        rule[f"{mass:g} kg"] = {
+            **{f"b.{side} [m]": b[side] * share for side in SIDES},
+            **{f"or h.{side} [m]": h[side] * share for side in SIDES},
+            "turn [rad]": atan2(float(s.pitch.axis @ np.cross(u, moment)), float(u @ moment)),
+        }
+    return rule
 
 
 def _vec3(v: Array) -> Vec3:
@@ -294,7 +259,9 @@ METHOD = Method(
     applies,
     design,
     {
-        "b": Parameter("length", "from the centre to a spring's end on the link; BODY is left, right or roll", each=True),
+        "b": Parameter(
+            "length", "from the centre to a spring's end on the link; BODY is left, right or roll", each=True
+        ),
         "h": Parameter("length", "from the centre to its end on the disk; two of b, h and k at most", each=True),
         "stiffness": Parameter("stiffness", "k of a spring: k b h = m g l / 2 on either side", each=True),
         "arrangement": Parameter("text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS),
