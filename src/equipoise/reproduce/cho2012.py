@@ -24,8 +24,8 @@ from .record import Map, Reproduction, Row, half_unit, spread
 
 PAPER = "cho2012"
 CITATION = (
-    'C. Cho, W. Lee, J. Lee, S. Kang, "A 2-dof gravity compensator with bevel gears", Journal of Mechanical Science and '
-    "Technology 26 (2012)"
+    'C. Cho, W. Lee, J. Lee, S. Kang, "A 2-dof gravity compensator with bevel gears", '
+    "Journal of Mechanical Science and Technology 26 (2012)"
 )
 G = 9.81  # [m/s^2]
 M, L, H, B = "6.7", "0.164", "0.0685", "0.049"  # [kg, m, m, m] Sec. 4.1
@@ -97,7 +97,7 @@ def _stiffness() -> Iterator[Row]:
     other = float(M) - half_unit(M)
     note = (
         f"1 % more than in print, within what the rounding of the printed m, l, b, h allows: m = {other:.2f} kg would "
-        f"give {of(other, *map(float, inputs[1:])):.3f}; no g would, for it would have to be {low:.2f} to {high:.2f} m/s^2"
+        f"give {of(other, *map(float, inputs[1:])):.3f}; no g would: {low:.2f} to {high:.2f} m/s^2"
     )
     yield Row(PAPER, "k = m g l / (2 b h) (23), Sec. 4.1", K, k / 1e3, "kN/m", spread(of, inputs), note=note)
     one = single_stiffness(_weight(), float(B), float(H))
@@ -112,7 +112,7 @@ def _energy() -> Iterator[Row]:
     yield Row(PAPER, "C of (17) over k (b^2 + h^2)", "2", constant / (k * (float(B) ** 2 + float(H) ** 2)), erratum=_C)
     for arrangement in ARRANGEMENTS:
         certificate = balanced(arrangement).balance.certificate
-        yield Row(PAPER, f"largest Fourier coefficient of the energy that varies, fixed gear {arrangement} (22)", None,
+        yield Row(PAPER, f"largest Fourier coefficient that varies, fixed gear {arrangement} (22)", None,
                   certificate.max_coefficient or 0.0, "J", note="a proof of balance at every configuration")  # fmt: skip
 
 
@@ -133,8 +133,8 @@ def _table_1() -> Iterator[Row]:
 
 
 _STATIC = (
-    "what the actuator holds, minus tau_m of (2): m g l s_1 c_2, which the text of Sec. 4.2 prints as 't_1 = mgl_1 c_2'",
-    "m g l c_1 s_2, which the text prints as 't_2 = mgl_2 c_2'",
+    "what the actuator holds, minus tau_m of (2): m g l s_1 c_2; the text of Sec. 4.2 prints 't_1 = mgl_1 c_2'",
+    "m g l c_1 s_2; the text prints 't_2 = mgl_2 c_2'",
 )
 
 
@@ -161,23 +161,25 @@ def _ratios() -> Iterator[Row]:
         yield Row(PAPER, item, None, share, note=note)
 
 
-def _maps() -> tuple[Map, Map]:
-    springs = {"no springs": shoulder(), "balanced": balanced().mechanism, "both springs 1 % soft": scaled(1 - SOFT)}
-    torques = {label: _over_hemisphere(m) for label, m in springs.items()}
-    first, second = (
+def _maps() -> tuple[Map, ...]:
+    before, after, soft = map(_over_hemisphere, (shoulder(), balanced().mechanism, scaled(1 - SOFT)))
+    pictures = {
+        "torque": ("without springs and balanced", {"no springs": before, "balanced": after}),
+        "soft": ("with both springs 1 % soft", {"1 % soft": soft}),
+    }
+    return tuple(
         Map(
-            f"torque{j + 1}",
-            f"Cho et al. (2012): torque of theta_{j + 1} ({name}) over the hemisphere",
+            name,
+            f"Cho et al. (2012): holding torque over the hemisphere, {title}",
             "theta_1 [rad]",
             "theta_2 [rad]",
             "torque [N m]",
             *GRID,
-            {label: torque[..., j] for label, torque in torques.items()},
-            note=f"largest: {'; '.join(f'{label} {_largest(t[..., j])}' for label, t in torques.items())}",
+            {f"of theta_{j + 1}, {label}": torque[..., j] for label, torque in torques.items() for j in range(2)},
+            note=f"largest: {', '.join(f'{label} {_largest(torque)}' for label, torque in torques.items())}",
         )
-        for j, name in enumerate(("roll", "pitch"))
+        for name, (title, torques) in pictures.items()
     )
-    return first, second
 
 
 def _over_hemisphere(m: Mechanism) -> Array:

@@ -87,7 +87,7 @@ def design(
     first = _shoulder(bare)
     size = Mounts.of(bare).default_radius(first.pitch.name)
     width = size / 2 if spacing is None else number("spacing", spacing, positive=True)
-    masses = {side: 0.0 for side in SIDES} | numbers("disk_mass", disk_mass, SIDES, positive=False)
+    masses = dict.fromkeys(SIDES, 0.0) | numbers("disk_mass", disk_mass, SIDES, positive=False)
     J = differential(arrangement, ratio)
     geared, disks = _with_disks(bare, first, J, masses, width)
     carried = Payload.of(first, payload, payload_at)
@@ -259,15 +259,15 @@ METHOD = Method(
     applies,
     design,
     {
-        "b": Parameter(
-            "length", "from the centre to a spring's end on the link; BODY is left, right or roll", each=True
-        ),
-        "h": Parameter("length", "from the centre to its end on the disk; two of b, h and k at most", each=True),
+        "b": Parameter("length", "from O to a spring's end on the link; BODY is left, right or roll", each=True),
+        "h": Parameter("length", "from O to its end on the disk; two of b, h and k at most", each=True),
         "stiffness": Parameter("stiffness", "k of a spring: k b h = m g l / 2 on either side", each=True),
         "arrangement": Parameter("text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS),
         "gear_ratio": Parameter("number", "teeth of the fixed gear over a disk's (default 1; others approximate)"),
         "disk_mass": Parameter("mass", "of a disk with its gear (default 0); BODY is left or right", each=True),
-        "spacing": Parameter("length", "from the centre to either disk (default a quarter of the link's size)"),
+        "spacing": Parameter(
+            "length", "from O, where the axes meet, to either disk (default a quarter of the link's size)"
+        ),
         "workspace": Parameter("text", "joint ranges (default file)", WORKSPACES),
         "payload": Parameter("mass", "one mass, or a range LOW,HIGH", many=True),
         "payload_at": Parameter("length", "x,y,z in the link's frame (default its com)", many=True),

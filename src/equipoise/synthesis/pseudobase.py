@@ -9,7 +9,7 @@ the first links, which only turn about the vertical, carry the foot of the chain
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 

@@ -1,7 +1,7 @@
 """A roll-pitch shoulder: where it is in a mechanism, and what gravity does to it.
 
-The roll axis a_1 is horizontal on a body that stays upright, the pitch axis a_2 crosses it at right angles in O. In terms
-of phi and psi, roll and pitch counted from where the link's moment is straight down, the energy of gravity is
+The roll axis a_1 is horizontal on a body that stays upright, the pitch axis a_2 crosses it at right angles in O. In
+terms of phi and psi, roll and pitch counted from where the link's moment is straight down, the energy of gravity is
 
     U = -g |sigma_2| cos(phi) cos(psi) - g |sigma_1| cos(phi - phi_1)
 
