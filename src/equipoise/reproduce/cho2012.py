@@ -113,7 +113,7 @@ def _energy() -> Iterator[Row]:
     for arrangement in ARRANGEMENTS:
         certificate = balanced(arrangement).balance.certificate
         yield Row(PAPER, f"largest Fourier coefficient that varies, fixed gear {arrangement} (22)", None,
-                  certificate.max_coefficient or 0.0, "J", note="a proof of balance at every configuration")  # fmt: skip
+                  certificate.max_coefficient or 0.0, "J", note="proof of balance at every configuration")  # fmt: skip
 
 
 _C = (

@@ -265,9 +265,7 @@ METHOD = Method(
         "arrangement": Parameter("text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS),
         "gear_ratio": Parameter("number", "teeth of the fixed gear over a disk's (default 1; others approximate)"),
         "disk_mass": Parameter("mass", "of a disk with its gear (default 0); BODY is left or right", each=True),
-        "spacing": Parameter(
-            "length", "from O, where the axes meet, to either disk (default a quarter of the link's size)"
-        ),
+        "spacing": Parameter("length", "from O to either disk (default a quarter of the link's size)"),
         "workspace": Parameter("text", "joint ranges (default file)", WORKSPACES),
         "payload": Parameter("mass", "one mass, or a range LOW,HIGH", many=True),
         "payload_at": Parameter("length", "x,y,z in the link's frame (default its com)", many=True),

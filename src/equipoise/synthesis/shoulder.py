@@ -91,12 +91,6 @@ def find(mechanism: Mechanism) -> tuple[Shoulder | None, list[str]]:
     r = links[i].parent
     roll, pitch = links[r], links[i]
     reasons = [*slide_faults(mechanism, links), *_joint_faults(mechanism, links, roll, pitch)]
-    reasons += [
-        f"gravity also does work on '{links[j].name}': the mass centre of what turns with '{pitch.name}' must be "
-        "fixed in it; a fixed joint or a counterweight would do"
-        for j in working
-        if j not in (r, i)
-    ]
     if reasons:
         return None, reasons
     tree = Tree.of(mechanism)
@@ -106,6 +100,12 @@ def find(mechanism: Mechanism) -> tuple[Shoulder | None, list[str]]:
     a_1, a_2 = roll.axis, R_12 @ pitch.axis  # in the frame of the roll link at roll = pitch = 0
     a_3 = np.cross(a_1, a_2)
     reasons = list(_axis_faults(roll, pitch, a_1, a_2))
+    reasons += [
+        f"gravity also does work on '{links[j].name}': the mass centre of what turns with '{pitch.name}' must be "
+        "fixed in it; a fixed joint or a counterweight would do"
+        for j in working
+        if j not in (r, i)
+    ]
     if reasons:
         return None, reasons
     along = pitch.axis * (pitch.axis @ found[i].vector)
