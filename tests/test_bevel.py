@@ -44,7 +44,7 @@ def random_shoulder(seed: int, yaw: bool = False, simple: bool = False) -> eq.Me
     `simple` puts the mass in the plane across the pitch axis and none on the roll link.
     """
     rng = np.random.default_rng(seed)
-    up, R = rng.normal(size=3), Rotation.random(4, random_state=seed)
+    up, R = rng.normal(size=3), Rotation.from_rotvec(rng.normal(size=(4, 3)))
     up /= np.linalg.norm(up)
     side = np.cross(up, rng.normal(size=3))  # horizontal
     roll_axis = R[1].inv().apply(R[0].inv().apply(side))  # in the frame of the roll link at zero
