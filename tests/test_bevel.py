@@ -376,6 +376,10 @@ def test_friction_margin():
     rough = eq.design(shoulder(), "bevel", gear_ratio=0.5, friction=1.0).free_parameters
     assert rough["margin"]["roll"] < 0
     assert rough["spring_error"]["all springs"] == 0
+    rolls = replace(shoulder(), masses=(eq.PointMass("motor", "link 1", 1.0, (0.1, 0, 0)),))
+    errors = eq.design(rolls, "bevel", friction={"pitch": 0.2}).free_parameters["spring_error"]
+    assert errors["roll spring"] is None  # it never loads the pitch joint
+    assert errors["left spring"] == pytest.approx(0.4 / weight, rel=1e-6)
 
 
 def test_what_was_chosen_makes_the_same_design_again():
@@ -414,7 +418,7 @@ def distal() -> eq.Mechanism:
         ),
         (changed(1, type="fixed", range=None), "'link 2': turned by one joint only"),
         (distal(), "gravity also does work on 'forearm': the mass centre of what turns with 'link 2' must be fixed"),
-        (eq.design(shoulder(), "bevel").mechanism, "joint 'left disk' is geared to 'roll' already"),
+        (eq.design(shoulder(), "bevel").mechanism, "joint 'left disk' is geared to the shoulder already"),
         (exact_pendulum().mechanism, "'arm': turned by one joint only"),
         (counterweight().mechanism, "gravity does no work on any link: nothing to balance"),
         (lee_chen(), "the axes of 'joint2' and 'joint3' are 90 deg off a right angle"),

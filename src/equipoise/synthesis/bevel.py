@@ -150,10 +150,9 @@ def applies(mechanism: Mechanism) -> list[str]:
     if found is None:
         return reasons
     return [
-        f"joint '{coupling.joint}' is geared to '{name}' already: give the shoulder without its gears"
+        f"joint '{coupling.joint}' is geared to the shoulder already: give it without its gears"
         for coupling in mechanism.couplings
-        for name, _ in coupling.terms
-        if name in found.coordinates
+        if {name for name, _ in coupling.terms} & {*found.coordinates}
     ]
 
 

@@ -20,8 +20,9 @@ def torque_margin(balance: Balance, friction: Mapping[str, float]) -> dict[str, 
     Returns:
         ``margin``: coordinate -> friction less the largest residual; negative where friction does not hold it.
         ``spring_error``: spring -> by which share its stiffness alone may be wrong with every pose still held, and
-        under "all springs" by which they may all be, in the same direction; 0 where the margin is negative. Where
-        there is a residual the shares are on the safe side: the worst poses are taken as the same.
+        under "all springs" by which they may all be, in the same direction; 0 where the margin is negative, None for
+        a spring that does not load these coordinates. Where there is a residual the shares are on the safe side: the
+        worst poses are taken as the same.
     """
     m = balance.mechanism
     index = [m.coordinates.index(name) for name in friction]
@@ -32,5 +33,6 @@ def torque_margin(balance: Balance, friction: Mapping[str, float]) -> dict[str, 
     for name, springs in groups.items():
         load = check(weightless.with_springs(springs)).residual.max[index]
         shares = np.divide(margin, load, out=np.full(len(load), np.inf), where=load > 0)
-        errors[name] = max(0.0, float(shares.min(initial=np.inf)))
+        least = float(shares.min(initial=np.inf))
+        errors[name] = max(0.0, least) if least < np.inf else None
     return {"margin": dict(zip(friction, margin.tolist(), strict=True)), "spring_error": errors}

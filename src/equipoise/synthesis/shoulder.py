@@ -100,12 +100,12 @@ def find(mechanism: Mechanism) -> tuple[Shoulder | None, list[str]]:
     a_1, a_2 = roll.axis, R_12 @ pitch.axis  # in the frame of the roll link at roll = pitch = 0
     a_3 = np.cross(a_1, a_2)
     reasons = list(_axis_faults(roll, pitch, a_1, a_2))
-    reasons += [
-        f"gravity also does work on '{links[j].name}': the mass centre of what turns with '{pitch.name}' must be "
-        "fixed in it; a fixed joint or a counterweight would do"
-        for j in working
-        if j not in (r, i)
-    ]
+    others = ", ".join(f"'{links[j].name}'" for j in working if j not in (r, i))
+    if others:
+        reasons.append(
+            f"gravity also does work on {others}: the mass centre of what turns with '{pitch.name}' must be fixed in "
+            "it; fixed joints or counterweights would do"
+        )
     if reasons:
         return None, reasons
     along = pitch.axis * (pitch.axis @ found[i].vector)
