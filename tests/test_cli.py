@@ -9,6 +9,7 @@ import pytest
 from robots import ROBOTS, lee_chen
 
 import equipoise as eq
+from equipoise.synthesis import METHODS
 
 PENDULUM = """\
 schema: 1
@@ -106,8 +107,9 @@ def test_loops_are_refused(run, tmp_path):
 def test_methods(run):
     code, out, _ = run("methods", ROBOTS / "ur5.urdf", "--json")
     assert code == 0
-    (row,) = json.loads(out)
-    assert (row["method"], row["applies"], row["reasons"]) == ("convex", True, [])
+    rows = {row["method"]: row for row in json.loads(out)}
+    assert rows.keys() == METHODS.keys()
+    assert (rows["convex"]["applies"], rows["convex"]["reasons"]) == (True, [])
     assert run("methods", ROBOTS / "ur5.urdf")[0] == 0
 
 
