@@ -49,7 +49,7 @@ def whole_turns(tree: Tree, periods: ArrayLike = 1) -> bool:
 
 def inside(tree: Tree, q: Array, slack: float = 1e-12) -> Booleans:
     """(N,) whether every joint, dependent ones included, is inside its range at `q` (N, n)."""
-    s = q @ tree.C.T + tree.s0
+    s = tree.values(q)
     return np.asarray(((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1))
 
 
