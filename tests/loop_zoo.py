@@ -15,8 +15,16 @@ Y = (0.0, 1.0, 0.0)
 
 def four_bar(a: float = 0.2, b: float = 0.5, c: float = 0.4, d: float = 0.45, **more: object) -> Mechanism:
     """Crank a, coupler b, rocker c, ground d along x; hinges about -y, the coupler's end closed by a hinge."""
-    bodies = (Body("crank", 1.0, (a / 2, 0, 0)), Body("coupler", 1.5, (b / 2, 0.0, 0.05)), Body("rocker", 1.2, (c / 2, 0, 0)))
-    joints = (hinge("crank", "world", "crank"), hinge("coupler", "crank", "coupler", a), hinge("rocker", "world", "rocker", d))
+    bodies = (
+        Body("crank", 1.0, (a / 2, 0, 0)),
+        Body("coupler", 1.5, (b / 2, 0.0, 0.05)),
+        Body("rocker", 1.2, (c / 2, 0, 0)),
+    )
+    joints = (
+        hinge("crank", "world", "crank"),
+        hinge("coupler", "crank", "coupler", a),
+        hinge("rocker", "world", "rocker", d),
+    )
     loop = Loop("coupler", (b, 0.0, 0.0), "rocker", (c, 0.0, 0.0), LIFT, LIFT)
     assembly = (("coupler", 0.5), ("rocker", 1.8))
     return replace(Mechanism("four-bar", bodies, joints, loops=(loop,), assembly=assembly), **more)  # type: ignore[arg-type]
@@ -60,7 +68,9 @@ def delta(upper: float = UPPER, lower: float = LOWER, base: float = BASE, platfo
     return Mechanism("DELTA", tuple(bodies), (*drives, *rest), loops=tuple(loops))
 
 
-def delta_inverse(p: np.ndarray, upper: float = UPPER, lower: float = LOWER, offset: float = BASE - PLATFORM) -> np.ndarray:
+def delta_inverse(
+    p: np.ndarray, upper: float = UPPER, lower: float = LOWER, offset: float = BASE - PLATFORM
+) -> np.ndarray:
     """(N, 3) angles of A for the platform's centre at `p` (N, 3), elbows outwards; NaN where a leg does not reach.
 
     In each leg's frame ``|p + (platform - base) - upper (cos t, 0, sin t)| = lower``.

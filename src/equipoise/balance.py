@@ -5,7 +5,7 @@ Everything is computed from the mechanism alone, so that no design method has to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from .energy.frames import MAX_TERMS, NoFourierForm
 from .energy.peak import climb
 from .energy.potential import Potential, State
 from .errors import InputError
-from .kinematics import Tree, sample
+from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
 from .validate import MAX_SAMPLES, whole_number
 
@@ -91,11 +91,27 @@ class Balance:
     worst_torque: Array
     use: tuple[SpringUse, ...]
 
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The independent coordinates, in the file's order."""
+        return Tree.of(self.mechanism).coordinates
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
+        return Tree.of(self.mechanism).units
+
+    @property
+    def mobility(self) -> Mobility | None:
+        """How many ways a mechanism with loops can move; None without loops."""
+        tree = Tree.of(self.mechanism)
+        return tree.mobility if isinstance(tree, Linkage) else None
+
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
         shares = [0.0]
-        units = np.array(self.mechanism.coordinate_units)
+        units = np.array(self.units)
         for unit in ("rad", "m"):
             residual, unbalanced = (
                 float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced)
@@ -112,10 +128,11 @@ class Balance:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``equipoise check --json`` (plain numbers, lists and text)."""
-        n = len(self.mechanism.coordinates)
+        coordinates = self.coordinates
         return {
             "mechanism": self.mechanism.name,
-            "coordinates": list(self.mechanism.coordinates),
+            "coordinates": list(coordinates),
+            "mobility": None if self.mobility is None else asdict(self.mobility),
             "exact": self.exact,
             "certificate": {
                 "kind": self.certificate.kind,
@@ -133,7 +150,7 @@ class Balance:
             "torque": {
                 "unbalanced": {"max": self.unbalanced.max.tolist(), "rms": self.unbalanced.rms.tolist()},
                 "residual": {"max": self.residual.max.tolist(), "rms": self.residual.rms.tolist()},
-                "bound": [None] * n if self.bound is None else self.bound.tolist(),
+                "bound": [None] * len(coordinates) if self.bound is None else self.bound.tolist(),
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
@@ -162,8 +179,8 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         max_terms: a longer Fourier form is not computed, and the verdict rests on samples.
 
     Raises:
-        UnsupportedError: the mechanism has loops.
-        InputError: the ranges of coupled joints contradict each other, or its numbers are so large that they overflow.
+        InputError: its loops cannot be closed, the ranges of its joints contradict each other, or its numbers are so
+            large that they overflow.
     """
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples

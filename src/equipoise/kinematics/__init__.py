@@ -1,7 +1,8 @@
 """Where the bodies are: poses, Jacobians and random configurations."""
 
 from .assembly import Mobility
-from .linkage import Linkage, Status
+from .branch import Status
+from .linkage import Linkage
 from .sampling import sample
 from .tree import Poses, Tree, Velocities
 

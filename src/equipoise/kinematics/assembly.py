@@ -13,9 +13,13 @@ from .continuation import CLOSED, Split
 
 STARTS = 40  # random ones, when the guess does not lead to a closed pose
 STEPS = 200
-RANK = 1e-8  # singular values below this share of the largest are redundancy
+RANK = 1e-8  # singular values below this share of the largest, or of 1, are redundancy
 NEARBY = 1e-2  # [rad, or share of the size] how far the poses are that tell whether the assembly pose is singular
-STEERS = (1e-2, 1e-4, 1e-6)  # what a column must add to the dependent ones, as a share of its length; the first that does
+STEERS = (
+    1e-2,
+    1e-4,
+    1e-6,
+)  # what a column must add to the dependent ones, as a share of its length; the first that does
 
 
 @dataclass(frozen=True)
@@ -41,15 +45,14 @@ def assemble(closure: Closure) -> Array:
     """
     tree, rng = closure.tree, np.random.default_rng(0)
     rows = tree.coordinate_rows
-    lower, upper = tree.lower[rows], tree.upper[rows]
+    free = np.where(tree.turns, np.pi, closure.size)
+    lower, upper = (np.where(np.isinf(end), x, end) for end, x in ((tree.lower[rows], -free), (tree.upper[rows], free)))
     guess = np.where((lower <= 0) & (upper >= 0), 0.0, 0.5 * (lower + upper))
     for name, value in tree.mechanism.assembly:
         guess[tree.coordinates.index(name)] = value
-    free = np.where(tree.turns, np.pi, closure.size)
-    box = np.where(np.isinf(lower), -free, lower), np.where(np.isinf(upper), free, upper)
     best, gap, outside = guess, np.inf, None
     for i in range(1 + STARTS):
-        q = _descend(closure, guess if i == 0 else rng.uniform(*box))
+        q = _descend(closure, guess if i == 0 else rng.uniform(lower, upper))
         size = float(np.abs(closure.at(q[None])[0]).max())
         if size < CLOSED:
             s = tree.values(q[None])[0]
@@ -68,8 +71,10 @@ def _not_assembled(closure: Closure, best: Array, outside: Array | None) -> Faul
         wrong = int(np.argmax(np.maximum(tree.lower - s, s - tree.upper)))
         unit, factor = ("deg", 180 / np.pi) if tree.rotates[wrong] else ("mm", 1e3)
         found, low, high = (f"{factor * x:.4g}" for x in (s[wrong], tree.lower[wrong], tree.upper[wrong]))
-        message = f"they close only with joint '{tree.motions[wrong]}' at {found} {unit}, outside its range of {low} to {high} {unit}"
-        return Fault(("loops",), f"{message}; give 'assembly' values near a closed pose, or widen the range")
+        message = (
+            f"they close only with joint '{tree.motions[wrong]}' at {found} {unit}, outside its range of {low} to "
+        )
+        return Fault(("loops",), f"{message}{high} {unit}; give 'assembly' values near a closed pose, or widen it")
     gaps = closure.gaps(best[None])[0]
     i = int(gaps.argmax())
     loop = tree.mechanism.loops[i]
@@ -85,7 +90,7 @@ def _descend(closure: Closure, q: Array) -> Array:
         if np.abs(residual).max() < CLOSED / 10:
             break
         U, S, Vt = np.linalg.svd(J, full_matrices=False)
-        keep = S > RANK * S.max(initial=0)
+        keep = RANK * S.max(initial=1.0) < S
         if not keep.any():
             break
         S = S[keep]
@@ -132,7 +137,7 @@ def mobility(closure: Closure, q: Array) -> Mobility:
 
 def _rank(J: Array) -> int:
     S = np.linalg.svd(J, compute_uv=False)
-    return int((S > RANK * S.max(initial=0)).sum())
+    return int((RANK * S.max(initial=1.0) < S).sum())
 
 
 def choose(closure: Closure, q: Array, freedom: int) -> Split:
@@ -180,7 +185,7 @@ def _dependent(J: Array, share: float) -> list[int]:
         rest = J[:, j]
         for _ in range(2):  # once more for the rounding of the first
             rest = rest - basis @ (basis.T @ rest)
-        if np.linalg.norm(rest) > share * max(np.linalg.norm(J[:, j]), RANK * np.linalg.norm(J)):
+        if np.linalg.norm(rest) > share * max(np.linalg.norm(J[:, j]), RANK * max(1.0, float(np.linalg.norm(J)))):
             basis = np.column_stack([basis, rest / np.linalg.norm(rest)])
             found.append(j)
     return found

@@ -10,42 +10,17 @@ so that no solver turns a hinge round. Everything is dimensionless: lengths are 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..arrays import Array
 from ..mechanism import Loop
-from .tree import Poses, Tree, Velocities
+from .tree import Poses, Tree
 
 OPPOSITE = 1e-3  # least 1 + a . b: beyond it the equation of a hinge is continued linearly
 
 
-@dataclass(frozen=True)
-class Hinge:
-    """`axis` (3,) in body number `a` stays parallel to ``cross(*normals)`` of body `b`; unit vectors."""
-
-    a: int
-    axis: Array
-    b: int
-    along: Array
-    normals: Array
-
-    @staticmethod
-    def of(tree: Tree, loop: Loop) -> Hinge | None:
-        """The hinge of a loop, None where it only joins points."""
-        if loop.axis_a is None or loop.axis_b is None:
-            return None
-        axis, along = (np.array(v) / np.abs(v).max() for v in (loop.axis_a, loop.axis_b))
-        axis, along = axis / np.linalg.norm(axis), along / np.linalg.norm(along)
-        first = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-        first /= np.linalg.norm(first)
-        normals = np.stack([first, np.cross(along, first)])
-        return Hinge(tree.index[loop.body_a], axis, tree.index[loop.body_b], along, normals)
-
-
 class Closure:
-    """The equations that close the loops of `tree.mechanism`.
+    """The equations that close the loops of `tree.mechanism`: first the gaps of all loops, then the hinges.
 
     Attributes:
         tree: the spanning tree, whose n coordinates the equations are in.
@@ -59,51 +34,130 @@ class Closure:
         self.loops = tree.mechanism.loops
         self.size = _size(tree)
         self.scale = np.where(tree.turns, 1.0, self.size)
-        self._points = [(tree.index[o.body_a], np.array(o.p_a), tree.index[o.body_b], np.array(o.p_b)) for o in self.loops]
-        self._hinges = [Hinge.of(tree, loop) for loop in self.loops]
-        self.count = sum(3 if hinge is None else 5 for hinge in self._hinges)
+        index = tree.index
+        self._a = np.array([index[loop.body_a] for loop in self.loops])
+        self._b = np.array([index[loop.body_b] for loop in self.loops])
+        self._p_a = np.array([loop.p_a for loop in self.loops], float)
+        self._p_b = np.array([loop.p_b for loop in self.loops], float)
+        hinges = [i for i, loop in enumerate(self.loops) if loop.axis_a is not None]
+        self._hinges = np.array(hinges, int)
+        self._axes_a = np.array([_unit(self.loops[i].axis_a) for i in hinges]).reshape(-1, 3)
+        self._frames_b = np.array([_frame(self.loops[i]) for i in hinges]).reshape(-1, 3, 3)
+        self.count = 3 * len(self.loops) + 2 * len(hinges)
+
+        turning, levers, sliding = _supports(tree)
+        points = len(tree.names) + 2 * len(self.loops)  # the bodies' origins, then p_a and then p_b of all loops
+        lever = np.zeros((len(self.loops), len(tree.motions), points))
+        for i, (A, B) in enumerate(zip(self._a, self._b, strict=True)):
+            for sign, body, point in ((-1, A, i), (1, B, len(self.loops) + i)):
+                lever[i, :, : len(tree.names)] += sign * levers[body]
+                lever[i, turning[body], len(tree.names) + point] += sign
+                lever[i, turning[body], body] -= sign
+        lever = lever.reshape(-1, points)
+        self._turned = np.flatnonzero(lever.any(axis=1))  # loop and motion in one number: where a motion turns an end
+        self._lever = lever[self._turned].T
+        self._slides = sliding[self._b].astype(float) - sliding[self._a]  # (loops, motions)
+        self._turns = (
+            turning[self._a[hinges]].astype(float) - turning[self._b[hinges]]
+        )  # (hinges, motions): a seen by b
 
     def residual(self, poses: Poses) -> Array:
         """(N, count) what is left of the equations, as shares of the size."""
-        parts = []
-        for (A, p_a, B, p_b), hinge in zip(self._points, self._hinges, strict=True):
-            parts.append((poses.point(B, p_b) - poses.point(A, p_a)) / self.size)
-            if hinge is not None:
-                a, b, normals = self._axes(poses, hinge)
-                x, c = np.einsum("ni,nki->nk", a, normals), np.einsum("ni,ni->n", a, b)
-                parts.append(2 * x / np.maximum(1 + c, OPPOSITE)[:, None])
-        return np.concatenate(parts, axis=1)
+        a, b = self._points(poses)
+        gaps = ((b - a) / self.size).reshape(len(a), 3 * len(self.loops))
+        if not len(self._hinges):
+            return gaps
+        x = self._cosines(*self._axes(poses))
+        tangents = 2 * x[:, :, :2] / np.maximum(1 + x[:, :, 2:], OPPOSITE)
+        return np.hstack([gaps, tangents.reshape(len(a), 2 * len(self._hinges))])
 
-    def jacobian(self, poses: Poses, velocities: Velocities) -> Array:
-        """(N, count, n) derivative of the equations by the coordinates in their units `scale`."""
-        parts = []
-        for (A, p_a, B, p_b), hinge in zip(self._points, self._hinges, strict=True):
-            parts.append((velocities.point(poses, B, p_b) - velocities.point(poses, A, p_a)) / self.size)
-            if hinge is not None:
-                a, b, normals = self._axes(poses, hinge)
-                x, c = np.einsum("ni,nki->nk", a, normals), np.einsum("ni,ni->n", a, b)
-                w = velocities.w[:, hinge.a] - velocities.w[:, hinge.b]  # of a as body_b sees it
-                across = np.cross(a[:, None], np.concatenate([normals, b[:, None]], axis=1))  # (w x a) . e = w . (a x e)
-                rate = across @ w
-                down = np.maximum(1 + c, OPPOSITE)[:, None, None]
-                parts.append(2 * rate[:, :2] / down - 2 * x[:, :, None] * rate[:, 2:] / down**2 * (down > OPPOSITE))
-        return np.concatenate(parts, axis=1) * self.scale
+    def jacobian(self, q: Array, poses: Poses) -> Array:
+        """(N, count, n) derivative of the equations by the coordinates in units of `scale`, at `q` with its `poses`."""
+        N, motions = len(q), len(self.tree.motions)
+        axes = np.swapaxes(self.tree.axes(q, poses), 1, 2)
+        points = np.concatenate([np.swapaxes(poses.p, 1, 2), *self._points(poses)], axis=2)
+        lever = (points.reshape(3 * N, len(self._lever)) @ self._lever).reshape(N, 3, len(self._turned))
+        rows = self._slides * axes[:, :, None]  # (N, 3, loops, motions)
+        flat = rows.reshape(N, 3, len(self.loops) * motions)
+        flat[:, :, self._turned] += _cross(axes[:, :, self._turned % motions], lever)
+        J = flat.reshape(N, 3 * len(self.loops), motions) / self.size
+        if len(self._hinges):
+            axis, frame = self._axes(poses)
+            x = self._cosines(axis, frame)
+            across = _cross(axis[:, :, :, None], np.swapaxes(frame, 2, 3), axis=2)
+            rate = (np.swapaxes(across, 2, 3) @ axes[:, None]) * self._turns[:, None]
+            down = np.maximum(1 + x[:, :, 2], OPPOSITE)[:, :, None, None]
+            bent = 2 * rate[:, :, :2] / down - (2 * (down > OPPOSITE) / down**2) * x[:, :, :2, None] * rate[:, :, 2:]
+            J = np.concatenate([J, bent.reshape(N, 2 * len(self._hinges), motions)], axis=1)
+        return J @ (self.tree.C * self.scale)
 
     def at(self, q: Array) -> tuple[Array, Array]:
         """Residual (N, count) and Jacobian (N, count, n) at coordinates `q` (N, n) of the tree."""
         poses = self.tree.poses(q)
-        return self.residual(poses), self.jacobian(poses, self.tree.velocities(q, poses))
+        return self.residual(poses), self.jacobian(q, poses)
 
     def gaps(self, q: Array) -> Array:
         """(N, loops) how far each loop is open [m]; an angle between the axes of a hinge counts at the size."""
-        residual, ends = self.residual(self.tree.poses(q)), np.cumsum([3 if h is None else 5 for h in self._hinges])
-        return self.size * np.stack([np.linalg.norm(part, axis=1) for part in np.split(residual, ends[:-1], axis=1)], axis=1)
+        residual, points = self.residual(self.tree.poses(q)), 3 * len(self.loops)
+        square = (residual[:, :points].reshape(len(q), 3, len(self.loops)) ** 2).sum(axis=1)
+        square[:, self._hinges] += (residual[:, points:].reshape(len(q), len(self._hinges), 2) ** 2).sum(axis=2)
+        return self.size * np.sqrt(square)
+
+    def _points(self, poses: Poses) -> tuple[Array, Array]:
+        """The two points (N, 3, loops) of every loop in the world [m]."""
+        ends = ((self._a, self._p_a), (self._b, self._p_b))
+        a, b = (np.swapaxes(poses.p[:, i] + (poses.R[:, i] @ p[..., None])[..., 0], 1, 2) for i, p in ends)
+        return a, b
+
+    def _axes(self, poses: Poses) -> tuple[Array, Array]:
+        """Of every hinge in the world: axis a (N, hinges, 3), and the rows (N, hinges, 3, 3) e, e and b."""
+        R_a, R_b = poses.R[:, self._a[self._hinges]], poses.R[:, self._b[self._hinges]]
+        return (R_a @ self._axes_a[..., None])[..., 0], self._frames_b @ np.swapaxes(R_b, 2, 3)
 
     @staticmethod
-    def _axes(poses: Poses, hinge: Hinge) -> tuple[Array, Array, Array]:
-        """The axes (N, 3) of both bodies and the two normals (N, 2, 3), in the world."""
-        R = poses.R[:, hinge.b]
-        return poses.R[:, hinge.a] @ hinge.axis, R @ hinge.along, hinge.normals @ np.swapaxes(R, 1, 2)
+    def _cosines(axis: Array, frame: Array) -> Array:
+        """(N, hinges, 3) a . e, a . e and a . b."""
+        return (frame @ axis[..., None])[..., 0]
+
+
+def _supports(tree: Tree) -> tuple[Array, Array, Array]:
+    """How motions move bodies.
+
+    Returns:
+        (bodies, motions) whether the motion turns the body; (bodies, motions, bodies) the lever of its origin, as
+        whole multiples of the bodies' origins; (bodies, motions) whether the motion shifts the origin.
+    """
+    bodies, motions = len(tree.names), len(tree.motions)
+    turning, sliding = np.zeros((bodies, motions), bool), np.zeros((bodies, motions), bool)
+    levers = np.zeros((bodies, motions, bodies))
+    for link in tree.links:
+        B, P = link.body, link.parent
+        turning[B], sliding[B], levers[B] = turning[link.base], sliding[P], levers[P]
+        levers[B, turning[P], B] += 1
+        levers[B, turning[P], P] -= 1
+        for motion in link.motions:
+            (turning if motion.rotates else sliding)[B, motion.row] = True
+    return turning, levers, sliding
+
+
+def _cross(a: Array, b: Array, axis: int = 1) -> Array:
+    """``a x b`` over an axis: quicker than the general one."""
+    (x, y, z), (u, v, w) = (np.moveaxis(c, axis, 0) for c in (a, b))
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=axis)
+
+
+def _unit(axis: tuple[float, float, float] | None) -> Array:
+    v = np.array(axis, float)
+    v /= np.abs(v).max()
+    return v / np.linalg.norm(v)
+
+
+def _frame(loop: Loop) -> Array:
+    """(3, 3) rows: two unit vectors normal to the axis of body_b, and the axis."""
+    along = _unit(loop.axis_b)
+    first = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(along, first), along])
 
 
 def _size(tree: Tree) -> float:

@@ -19,7 +19,7 @@ CLOSED = 1e-13  # residual, as a share of the mechanism's size
 ITERATIONS = 7
 STALLED = 0.5  # Newton gives up when the residual shrinks less than this
 STRAY = 0.3  # [rad, or share of the size] how far the closed pose may be from where the tangent led
-SHORTEST = 1 / 64  # of a path: no step is halved further
+SHORTEST = 0.02  # [rad, or share of the size] no shorter step is tried, but for a whole path
 CHUNK_ENTRIES = 300_000  # velocities held at a time: what stays in a processor's cache
 
 
@@ -47,7 +47,7 @@ def least_squares(J: Array, rhs: Array) -> tuple[Array, Array]:
 
 
 def tangent(J: Array, split: Split) -> tuple[Array, Array]:
-    """How the dependent coordinates follow the independent ones (N, d, m), in units of their scales; conditions (N,)."""
+    """How dependent coordinates follow the independent ones (N, d, m), in units of their scales; conditions (N,)."""
     T, condition = least_squares(J[:, :, split.dependent], J[:, :, split.independent])
     return -T, condition
 
@@ -71,6 +71,7 @@ def follow(closure: Closure, split: Split, start: Array, T: Array, J: Array, goa
     q, done = start.copy(), np.zeros(len(start), bool)
     J, T = J[:, :, split.dependent].copy(), T.copy()
     origin, way = start[:, split.independent], goal - start[:, split.independent]
+    length = np.abs(way / closure.scale[split.independent]).max(axis=1, initial=0)
     at, step = np.zeros(len(q)), np.ones(len(q))
     todo = np.arange(len(q))
     while len(todo):
@@ -89,7 +90,7 @@ def follow(closure: Closure, split: Split, start: Array, T: Array, J: Array, goa
         step[moved] *= 2
         step[todo[~good]] /= 2
         done[moved] = at[moved] == 1.0
-        todo = todo[~done[todo] & (step[todo] >= SHORTEST)]
+        todo = todo[~done[todo] & (step[todo] * length[todo] >= SHORTEST)]
     return q, done
 
 
@@ -113,7 +114,7 @@ def _newton(closure: Closure, split: Split, q: Array) -> tuple[Array, Array, Arr
             poses = type(poses)(poses.R[going], poses.p[going])
         if not len(todo):
             break
-        whole = closure.jacobian(poses, tree.velocities(q[todo], poses))
+        whole = closure.jacobian(q[todo], poses)
         J[todo] = whole[:, :, split.dependent]
         rhs = np.concatenate([whole[:, :, split.independent], residual[:, :, None]], axis=2)
         x, _ = least_squares(J[todo], -rhs)

@@ -157,6 +157,10 @@ class Tree:
         """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""
         return q @ self.C.T + self.s0
 
+    def narrow(self, lower: Array, upper: Array) -> tuple[Array, Array]:
+        """The part of a box of configurations (n,), (n,) that it can reach: all of it, unless loops limit it."""
+        return lower, upper
+
     def poses(self, q: Array) -> Poses:
         """Body poses at configurations `q` (N, n) [rad or m]."""
         N, s = len(q), self.values(q)
@@ -174,23 +178,31 @@ class Tree:
             p[:, link.body] = p[:, link.parent] + np.einsum("nij,nj->ni", R[:, link.parent], shift)
         return Poses(R, p)
 
+    def axes(self, q: Array, poses: Poses) -> Array:
+        """(N, motions, 3) unit axes of the elementary motions in the world, at `q` (N, n) with its `poses`."""
+        axes, s = np.empty((len(q), len(self.motions), 3)), None
+        for link in self.links:
+            if len(link.motions) == 1:  # an axis stays in place when its body turns about it
+                axes[:, link.motions[0].row] = poses.R[:, link.body] @ link.motions[0].axis
+            elif link.motions:
+                s = self.values(q) if s is None else s
+                R = poses.R[:, link.base] @ link.R0
+                for motion in link.motions:
+                    axes[:, motion.row] = R @ motion.axis
+                    R = R @ about(motion.axis, s[:, motion.row])
+        return axes
+
     def velocities(self, q: Array, poses: Poses) -> Velocities:
         """Analytic body velocities per unit rate of each coordinate, at `q` (N, n) with its `poses`."""
-        N, s = len(q), self.values(q)
-        w = np.zeros((N, len(self.names), 3, self.n))
+        axes = self.axes(q, poses)
+        w = np.zeros((len(q), len(self.names), 3, self.n))
         v = np.zeros_like(w)
         for link in self.links:
             B, P = link.body, link.parent
             w[:, B] = w[:, link.base]
             v[:, B] = v[:, P] + np.cross(w[:, P], (poses.p[:, B] - poses.p[:, P])[:, :, None], axis=1)
-            R = poses.R[:, link.base] @ link.R0
             for motion in link.motions:
-                axis = (R @ motion.axis)[:, :, None]
-                if motion.rotates:
-                    w[:, B] += axis * self.C[motion.row]
-                    R = R @ about(motion.axis, s[:, motion.row])
-                else:
-                    v[:, B] += axis * self.C[motion.row]
+                (w if motion.rotates else v)[:, B] += axes[:, motion.row, :, None] * self.C[motion.row]
         return Velocities(w, v)
 
 
