@@ -12,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .arrays import Array
+from .energy.closed import ClosedEnergy
 from .energy.fourier import EXACT, FourierEnergy
 from .energy.frames import MAX_TERMS, NoFourierForm
 from .energy.peak import climb
@@ -201,8 +202,9 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
-    bound = None if series is None else series.torque_bound()
-    proof = () if series is None or bound is None else (series.amplitude, bound)
+    # with loops the bound is one of the open tree's coordinates, not of the actuators
+    bound = None if series is None or mechanism.loops else series.torque_bound()
+    proof = [found for found in (None if series is None else series.amplitude, bound) if found is not None]
     if not all(np.isfinite(found).all() for found in (best, unbalanced_rms, residual_rms, *proof)):
         raise InputError(f"mechanism '{mechanism.name}' has numbers so large that its energies overflow")
     ranges = [(-float(minus), float(plus)) for minus, plus in zip(low, top, strict=True)]
@@ -227,9 +229,15 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
 
 
 def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[FourierEnergy | None, str | None]:
-    """The Fourier form of a mechanism's energy, or None and the reason why there is none."""
+    """The Fourier form of a mechanism's energy, or None and the reason why there is none.
+
+    With loops it is the form up to what the loops make zero, and only one that proves balance says anything.
+    """
     try:
-        return FourierEnergy(mechanism, max_terms), None
+        if not mechanism.loops:
+            return FourierEnergy(mechanism, max_terms), None
+        closed = ClosedEnergy(mechanism, max_terms)
+        return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
     except NoFourierForm as why:
         return None, str(why)
 
