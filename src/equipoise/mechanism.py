@@ -116,8 +116,6 @@ class Mechanism:
     masses: tuple[PointMass, ...] = ()
     gravity: Vec3 = (0.0, 0.0, -9.81)
     workspace: Workspace = Workspace()
-    independent: tuple[str, ...] = ()
-    assembly: tuple[tuple[str, float], ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict, hash=False)
     independent: tuple[str, ...] = ()
     assembly: tuple[tuple[str, float], ...] = ()

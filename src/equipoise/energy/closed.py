@@ -58,7 +58,7 @@ class ClosedEnergy(FourierEnergy):
             np.add.at(columns[:, i], inverse.ravel()[start : start + len(one)], coef)
             start += len(one)
         varies = every.any(axis=1)
-        A = np.vstack([columns[varies].real, columns[varies].imag])
+        A = np.vstack([np.real(columns[varies]), np.imag(columns[varies])])
         forces = np.linalg.lstsq(A[:, 1:], -A[:, 0], rcond=1e-12)[0]
         self.frequency = every[:, :n] / frames.denominators
         self.degree = every[:, n:]
@@ -88,7 +88,7 @@ def _opened(mechanism: Mechanism) -> Mechanism:
     linkage = Tree.of(mechanism)
     assert isinstance(linkage, Linkage)
     bare = replace(mechanism, loops=(), independent=(), assembly=())
-    q = linkage.solve(sample(linkage, POSES))[0]
+    q = linkage.branch.solve(sample(linkage, POSES))[0]
     single = {joint.name for joint in mechanism.joints if joint.type in SINGLE}
     names = linkage.open.coordinates
     couplings = list(_relations(q, [name in single for name in names], names))

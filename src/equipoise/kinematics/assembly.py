@@ -166,6 +166,7 @@ def choose(closure: Closure, q: Array, freedom: int) -> Split:
 
 
 def _automatic(J: Array, n: int, freedom: int) -> list[int]:
+    dependent = []
     for share in STEERS:
         dependent = _dependent(J, share)
         if len(dependent) == n - freedom:

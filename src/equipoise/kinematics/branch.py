@@ -126,7 +126,7 @@ class Branch:
     def _regular(self, q: Array) -> Booleans:
         """(N,) whether closed poses are no singular ones."""
 
-        def part(i: slice) -> tuple[Array]:
+        def part(i: slice) -> tuple[Booleans]:
             return (tangent(self.closure.at(q[i])[1], self.split)[1] < SINGULAR,)
 
         return self._by_parts(part, len(q), (np.zeros(0, bool),))[0]

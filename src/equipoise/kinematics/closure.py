@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Booleans
 from ..mechanism import Loop
 from .tree import Poses, Tree
 
@@ -120,7 +120,7 @@ class Closure:
         return (frame @ axis[..., None])[..., 0]
 
 
-def _supports(tree: Tree) -> tuple[Array, Array, Array]:
+def _supports(tree: Tree) -> tuple[Booleans, Array, Booleans]:
     """How motions move bodies.
 
     Returns:
@@ -147,16 +147,16 @@ def _cross(a: Array, b: Array, axis: int = 1) -> Array:
 
 
 def _unit(axis: tuple[float, float, float] | None) -> Array:
-    v = np.array(axis, float)
+    v: Array = np.array(axis, float)
     v /= np.abs(v).max()
-    return v / np.linalg.norm(v)
+    return v / float(np.linalg.norm(v))
 
 
 def _frame(loop: Loop) -> Array:
     """(3, 3) rows: two unit vectors normal to the axis of body_b, and the axis."""
     along = _unit(loop.axis_b)
-    first = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-    first /= np.linalg.norm(first)
+    first = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along)))]).astype(float)
+    first /= float(np.linalg.norm(first))
     return np.stack([first, np.cross(along, first), along])
 
 

@@ -7,6 +7,7 @@ mid-link (links 3 and 5 on the axes of their joints), half the spring's mass at 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -136,7 +137,7 @@ def _workspaces(robot: Mechanism) -> list[Row]:
 def _full() -> list[Row]:
     """Section 5 with data of which nothing is special."""
     robot = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, com_2=0.15, com_4=0.3).mechanism()
-    weights = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35}
+    weights: dict[str, Any] = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35}
     weights |= {"spring_7": 1.8, "spring_10": 0.5, "spring_11": 0.6}
     rows = []
     for printed in (False, True):

@@ -102,7 +102,7 @@ class _Reader:
     def __init__(self, mechanism: Mechanism) -> None:
         linkage = Tree.of(mechanism)
         assert isinstance(linkage, Linkage)
-        self.mechanism, self.tree, self.q = mechanism, linkage.open, linkage.assembled
+        self.mechanism, self.tree, self.q = mechanism, linkage.open, linkage.branch.assembled
         self.s = self.tree.values(self.q[None])[0]
         poses = self.tree.poses(self.q[None])
         self.R, self.p = poses.R[0], poses.p[0]
@@ -181,12 +181,11 @@ class _Reader:
         axes = [R[link.body] @ link.motions[0].axis for link in chain]
         y, across = axes[0], axes[2]
         self._want(abs(y @ up), f"the axis of '{two.joint.name}' is not horizontal")
-        self._want(
-            np.linalg.norm(np.cross(axes[1], y)), f"the axes of '{two.joint.name}' and '{three.joint.name}' differ"
-        )
+        wrong = f"the axes of '{two.joint.name}' and '{three.joint.name}' differ"
+        self._want(float(np.linalg.norm(np.cross(axes[1], y))), wrong)
         for link, axis in zip(chain[3:], axes[3:], strict=True):
             wrong = f"the axes of '{four.joint.name}' and '{link.joint.name}' are not parallel"
-            self._want(np.linalg.norm(np.cross(axis, across)), wrong)
+            self._want(float(np.linalg.norm(np.cross(axis, across))), wrong)
         wrong = f"the axes of '{three.joint.name}' and '{four.joint.name}' are not perpendicular"
         self._want(abs(across @ y), wrong)
         x = np.cross(y, up)

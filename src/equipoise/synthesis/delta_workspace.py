@@ -157,7 +157,7 @@ def _peak(torques: Array, p: Array) -> float:
 
 
 def _least_squares(torques: Array) -> Array:
-    return np.linalg.lstsq(torques[:, 1:], -torques[:, 0], rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(torques[:, 1:], -torques[:, 0], rcond=None)[0], float)
 
 
 def _least_peak(torques: Array) -> Array:
