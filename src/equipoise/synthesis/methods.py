@@ -7,11 +7,7 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import bevel, convex, pseudobase
-from .design import Design
-from .method import Method
-
-METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in (convex, pseudobase, bevel)}
+from . import bevel, convex, delta, pseudobase
 
 
 def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
@@ -30,7 +26,8 @@ def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Desi
     run = METHODS[method].run
     if "progress" not in signature(run).parameters:  # quick work reports none
         options.pop("progress", None)
-    valid = tuple(name for name in signature(run).parameters if name != "mechanism")
+    own = [name for name, p in signature(run).parameters.items() if p.kind is not p.VAR_KEYWORD and name != "mechanism"]
+    valid = tuple(dict.fromkeys([*own, *METHODS[method].parameters]))
     for name in options:
         if name not in valid:
             raise InputError(Fault((name,), f"method '{method}' has no such option", valid))
