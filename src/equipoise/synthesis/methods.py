@@ -7,7 +7,22 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import bevel, convex, delta, pseudobase
+from . import (
+    bevel,
+    convex,
+    delta,
+    pseudobase,
+)
+from .design import Design
+from .method import Method
+
+_MODULES = (
+    convex,
+    pseudobase,
+    bevel,
+    delta,
+)
+METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in _MODULES}
 
 
 def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
