@@ -86,7 +86,7 @@ def test_the_arm_of_lenzo(known):
     upper, fore = found.links
     np.testing.assert_allclose(upper.moment, (2 * 0.15 + 1.2 * 0.3, 0, 0), atol=1e-15)
     np.testing.assert_allclose(fore.moment, (1.2 * 0.12, 0, 0), atol=1e-15)
-    np.testing.assert_allclose(upper.length, (0.3, 0, 0), atol=1e-15)
+    assert upper.length == pytest.approx((0.3, 0, 0), abs=1e-15)
     assert (upper.free, fore.free) == (True, False)
     assert not upper.off_line(found.near)
     assert spread(m)[0] < 1e-13

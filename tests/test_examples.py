@@ -20,7 +20,8 @@ OF_THE_ZOO = {
     "parallelogram_lamp": "parallelogram_lamp",
     "geared_pair": "mirrored_pair",
 }
-OF_PAPERS = {"lin2010_arm", "lin2010_balanced"}  # test_lin2010 knows their answers
+OF_PAPERS = {"lin2010_arm", "lin2010_balanced", "bevel_shoulder", "bevel_balanced"}
+"""Their answers are known to test_lin2010 and test_cho2012."""
 
 
 def flat(value: Any, path: str = "") -> dict[str, Any]:

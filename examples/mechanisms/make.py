@@ -1,11 +1,14 @@
-"""Write lin2010_balanced.yaml: the arm of lin2010_arm.yaml balanced by the paper's method with the paper's numbers."""
+"""Write the examples that are designs: the bare mechanisms of the papers, balanced by their methods and numbers."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from equipoise import save
-from equipoise.reproduce.lin2010 import balanced
+from equipoise.reproduce import cho2012, lin2010
+
+DESIGNS = {"lin2010_balanced": lin2010.balanced, "bevel_balanced": cho2012.balanced}
 
 if __name__ == "__main__":
-    save(balanced().mechanism, Path(__file__).parent / "lin2010_balanced.yaml")
+    for name, design in DESIGNS.items():
+        save(design().mechanism, Path(__file__).parent / f"{name}.yaml")

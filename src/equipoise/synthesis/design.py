@@ -98,7 +98,7 @@ class Design:
         """
         balance = check(mechanism)
         residual, unbalanced = (sqrt(float(sum(load.rms**2))) for load in (balance.residual, balance.unbalanced))
-        return Design(
+        design = Design(
             mechanism=mechanism,
             method=method,
             objective="rms",
@@ -109,6 +109,8 @@ class Design:
             free_parameters=free_parameters,
             exact_feasible=True if balance.exact else None,
         ).with_provenance()
+        design.__dict__["balance"] = replace(balance, mechanism=design.mechanism)  # judged once
+        return design
 
     @cached_property
     def balance(self) -> Balance:

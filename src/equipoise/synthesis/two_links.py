@@ -115,15 +115,16 @@ def springs(
             )
     base, (upper, fore) = arm.chain.base, arm.link
     x1, up = arm.l1 / l1, arm.chain.up
-    ends = {  # points from the shoulder, at q = 0
-        "k1": (base, values.get("a1", 0) * up, upper.body, values.get("b1", 0) * _along(left, x1)),
+    ends = {}  # points from the shoulder, at q = 0
+    if count == 3:
+        ends["k1"] = base, values["a1"] * up, upper.body, values["b1"] * _along(left, x1)
+    ends |= {
         "k2": (base, values["a2"] * up, fore.body, arm.l1 + values["b2"] * arm.x2),
         "k12": (upper.body, values["b12"] * x1, fore.body, arm.l1 + values["a12"] * arm.x2),
     }
     made = tuple(
         Spring(name, A, arm.chain.on(A, upper.centre + p), B, arm.chain.on(B, upper.centre + q), values[name])
         for name, (A, p, B, q) in ends.items()
-        if name in values
     )
     order = (*FREE_3, *FREE)
     return made, {"layout": layout, "springs": count, **{name: values[name] for name in order if name in values}}
@@ -214,9 +215,9 @@ def _defaults(arm: TwoLinks, layout: str, a2: int) -> dict[str, float]:
 def _spring_1(arm: TwoLinks, left: Array, given: Mapping[str, float]) -> dict[str, float]:
     """k1, a1 and b1 for the moment `left` (3,) [N m] by the first line of (14)."""
     x1 = arm.l1 / np.linalg.norm(arm.l1)
-    moment = float(left @ _along(left, x1))
     if np.linalg.norm(left) <= arm.chain.near * arm.chain.weight * arm.link[0].mass:
         raise InfeasibleError("spring k2 leaves nothing for spring k1 (14): springs=2 does")
+    moment = float(left @ _along(left, x1))
     upper = arm.size[0]
     a1 = upper * _sign(moment * given.get("b1", moment))
     b1 = upper * _sign(moment * given.get("a1", 1.0))
