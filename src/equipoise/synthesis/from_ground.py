@@ -2,10 +2,10 @@
 
 Lenzo (2017) balances two links; this is what his approach gives for n. Link i has the vector l_i to the next joint and
 the first moment S_i, times g, with what is beyond it hung at its end. A spring s of stiffness k from height a above the
-first joint to the point p_s of link j has the energy k/2 |l_1 + .. + l_(j-1) + p_s - a up|^2. With u_i^s = l_i where
-the spring passes link i, p_s on its own link and 0 beyond, all energies together are constant when
+first joint to the point p_s of link j has the energy ``k/2 |l_1 + .. + l_(j-1) + p_s - a up|^2``. With u_i^s = l_i
+where the spring passes link i, p_s on its own link and 0 beyond, all energies together are constant when
 
-    sum_s k u_i^s u_j^s' = 0 for i < j,   sum_s k a u_i^s = S_i.                                  (*)
+    sum_s k u_i^s u_j^s' = 0 for i < j,   sum_s k a u_i^s = S_i                                   (A)
 
 All that reach link j > i pass link i with the same l_i, so that the first is sum_s k u_j^s = 0 for j > 1.
 """
@@ -29,8 +29,8 @@ def fewest_springs(chain: Chain) -> int:
 
     Proof. Any spring, also one between two links, adds k u_i u_j' to the block of links i and j, where u_i (3,) is
     what its stretch has of link i, and k u_i a' to that of link i and the ground, where a (3,) is its end there. Links
-    that turn freely need (*), with a' and up' in the second: the energy of a block M is tr(R_i M R_j'), constant over
-    all rotations only if M = 0. Collect the sqrt(k) u_i of the N springs in V_i (3, N). The first of (*) is
+    that turn freely need (A), with a' and up' in the second: the energy of a block M is tr(R_i M R_j'), constant over
+    all rotations only if M = 0. Collect the sqrt(k) u_i of the N springs in V_i (3, N). The first of (A) is
     V_i V_j' = 0: the row spaces are orthogonal in R^N, so N >= sum_i rank V_i. By the second, S_i is a combination of
     the columns of V_i. It also says that some spring joins the ground to the last loaded link n or one beyond, since
     S_n is not 0; such a spring passes every link i < n with u_i = l_i, so that l_i is among the columns too. Hence
@@ -58,8 +58,8 @@ def springs(
     """The springs, as many as `fewest_springs`; solved from the last link down.
 
     On the last link two of stiffness k, `height` apart on the ground, pull apart: their sum is zero, their moment S_n.
-    On a link between, one spring undoes the sum K of those beyond by k p = -K l, at a height that makes (*) hold along
-    l; a second one, `height` above it, adds what S has across l. All heights shift together until (*) holds for link 1.
+    On a link between, one spring undoes the sum K of those beyond by k p = -K l, at a height that makes (A) hold along
+    l; a second one, `height` above it, adds what S has across l. All heights shift together until (A) holds for link 1.
 
     Args:
         k: of the last link's springs [N/m]. A link alone gets one.
