@@ -18,10 +18,15 @@ def length(text: str, option: str) -> float:
     Raises:
         InputError: it is not a length; the message names the option.
     """
-    return _quantity(text, "length", option)
+    return quantity(text, "length", option)
 
 
-def _quantity(text: str, dimension: str, option: str) -> float:
+def quantity(text: str, dimension: str, option: str) -> float:
+    """A number in the SI unit of a dimension, or with a unit of its own.
+
+    Raises:
+        InputError: it is neither; the message names the option.
+    """
     try:
         return to_si(text, dimension)
     except ValueError as error:
@@ -149,4 +154,4 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None
         case dimension:
-            return _quantity(text, dimension, f"--set {name}")
+            return quantity(text, dimension, f"--set {name}")

@@ -105,6 +105,8 @@ TABLE_4 = {
     5: (5, 9, 0, 1.2, ("10.3125", "-5.0625", "0.7875", "-0.0375")),
     6: (5, 9, 0, 2.5, ("21.4844", "-10.5429", "1.6406", "-0.0781")),
 }
+UNFOLDED = {2: 2.8, 3: -0.85, 4: -2.5, 5: 0.8, 6: 2.7}  # [rad] a pose in which no module is nearly folded
+SWING = 0.3  # [rad] either way
 TIMES = np.linspace(0, 10, 1001)  # [s]
 
 
@@ -118,10 +120,19 @@ def arm() -> Mechanism:
 
 
 @cache
-def balanced() -> Design:
-    """The arm balanced by the method, with the masses of Table 2 and the K and l_CA of Table 3."""
+def balanced(real: bool = False) -> Design:
+    """The arm balanced by the method, with the masses of Table 2 and the K and l_CA of Table 3.
+
+    Args:
+        real: with the joints of Fig. 3, ball joints and all, over ranges in which no module folds.
+    """
+    bare = arm()
+    if real:
+        ranges = {f"joint {i}": (q - SWING, q + SWING) for i, q in UNFOLDED.items()}
+        joints = (replace(joint, range=ranges.get(joint.name)) for joint in bare.joints)
+        bare = replace(bare, joints=tuple(joints))
     return design(
-        arm(),
+        bare,
         "pseudobase",
         height=HEIGHT,
         stiffness={f"link {i}": row.K for i, row in TABLE_3.items()},
@@ -131,6 +142,7 @@ def balanced() -> Design:
         auxiliary_com={f"link {i}": _point(row.s_hat) for i, row in TABLE_2.items()},
         pseudobase={f"link {i}": float(row.m_base) for i, row in TABLE_2.items()},
         planar=(),  # the paper's modules are all RSSR
+        real=real,
     )
 
 

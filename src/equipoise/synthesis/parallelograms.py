@@ -2,7 +2,11 @@
 
 A module is the spatial parallelogram O_{i-1} C_i D_i O^_{i-1} of link i, its auxiliary link and the coupler between the
 two, the pseudobase. It is written with two `parallelogram` joints: the auxiliary link has the orientation of link i,
-and the coupler that of the upright link below. Only the line C_i D_i of a coupler on spherical joints is defined, for
+and the coupler that of the upright link below. Or with the joints it is built with: the auxiliary links hang on each
+other by hinges as the links do, and two ball joints hold a coupler, the second of them by closing a loop. Such a module
+folds where C_i, the joint's axis and the vertical come into one plane: keep joint ranges away from there.
+
+Only the line C_i D_i of a coupler on spherical joints is defined, for
 it may spin about that line: its mass centre and the spring's end lie on it.
 """
 
@@ -16,9 +20,13 @@ import numpy as np
 from ..arrays import Array
 from ..io.text import Names
 from ..kinematics import Tree
-from ..mechanism import Body, Joint, Mechanism
+from ..kinematics.sampling import sample
+from ..mechanism import Body, Joint, Loop, Mechanism
+from ..rotation import to_rpy
 from ..spring import Spring, Vec3
 from .moments import Lump, Moment, Segment, upwards
+
+POSES = 64  # of which the one with the widest parallelograms is where real joints are assembled
 
 
 @dataclass(frozen=True)
@@ -45,11 +53,15 @@ class Module:
 
 
 class Builder:
-    """Adds auxiliary links, pseudobases and springs to an arm whose auxiliary chain is `height` [m] above it."""
+    """Adds auxiliary links, pseudobases and springs to an arm whose auxiliary chain is `height` [m] above it.
 
-    def __init__(self, mechanism: Mechanism, links: Sequence[Segment], height: float) -> None:
-        self.mechanism, self.links, self.height = mechanism, links, height
-        tree = Tree.of(mechanism)
+    Args:
+        real: hinges, ball joints and loops in the place of `parallelogram` joints.
+    """
+
+    def __init__(self, mechanism: Mechanism, links: Sequence[Segment], height: float, real: bool = False) -> None:
+        self.mechanism, self.links, self.height, self.real = mechanism, links, height, real
+        self._tree = tree = Tree.of(mechanism)
         self._home = tree.poses(np.zeros((1, tree.n))).R[0]
         self._index = tree.index
 
@@ -69,32 +81,75 @@ class Builder:
             sizes: stiffness [N/m], l_CA and l_CB [m] of each one's spring.
         """
         m = self.mechanism
-        bodies, joints, springs = list(m.bodies), list(m.joints), []
+        bodies, joints, loops, springs = list(m.bodies), list(m.joints), [], []
         taken, held = Names(m.body_names), Names(joint.name for joint in m.joints)
         auxiliaries: dict[int, str] = {}
+        # ball joints are zero where it is assembled: there their three angles are far from being two
+        q = self._widest(modules) if self.real else np.zeros(self._tree.n)
+        assembly = dict(zip(self._tree.coordinates, q.tolist(), strict=True))
+        R = self._tree.poses(q[None]).R[0]
         for i, module in modules.items():
             link = self.links[i]
             parent, xyz = self._foot(link, auxiliaries)
             auxiliaries[i] = taken.new(f"{link.name} auxiliary")
             bodies.append(Body(auxiliaries[i], module.mass, _vec3(module.com)))
-            joints.append(
-                Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], _vec3(xyz),
-                      follows=link.name)
-            )  # fmt: skip
+            aside = Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], _vec3(xyz),
+                          follows=link.name)  # fmt: skip
             frame = self._upright(i)
-            up = self._up(frame)
+            stand = self._stand(frame)
+            up = stand.T @ self._up(frame)
             base = taken.new(f"{link.name} pseudobase")
             bodies.append(Body(base, module.coupler, _vec3(self.height / 2 * up)))
             C = link.origin + module.centre
-            joints.append(
-                Joint(held.new(f"{link.name} pseudobase"), "parallelogram", link.name, base, _vec3(C), follows=frame)
-            )
+            over = Joint(held.new(f"{link.name} pseudobase"), "parallelogram", link.name, base, _vec3(C), follows=frame)
+            if self.real:
+                below = self._beneath(link, auxiliaries)
+                aside = replace(aside, type="revolute", follows=None, rpy=to_rpy(self._turn(below, link.name)),
+                                axis=_vec3(link.axis))  # fmt: skip
+                over = replace(
+                    over,
+                    type="spherical",
+                    follows=None,
+                    rpy=to_rpy(R[self._index[link.name]].T @ R[self._index[frame]] @ stand),
+                )
+                assert link.joint is not None
+                assembly[aside.name] = assembly[link.joint.name]
+                D = Loop(base, _vec3(self.height * up), auxiliaries[i], _vec3(module.centre))
+                if module.planar:
+                    axis = _vec3(stand.T @ self._turn(frame, link.name) @ link.axis)
+                    over = replace(over, type="revolute", axis=axis)
+                    D = replace(D, axis_a=axis, axis_b=_vec3(link.axis))
+                loops.append(D)
+            joints += [aside, over]
             if i in sprung:
                 K, a, b = sizes[link.name]
                 towards = whole[i].vector / np.linalg.norm(whole[i].vector)
                 A, B = a * up, C + b * towards  # (13), (14)
                 springs.append(Spring(f"{link.name} spring", base, _vec3(A), link.name, _vec3(B), K))
-        return replace(m, bodies=tuple(bodies), joints=tuple(joints), springs=tuple(springs))
+        made = replace(m, bodies=tuple(bodies), joints=tuple(joints), springs=tuple(springs))
+        if not self.real:
+            return made
+        spins = (f"{joint.name}.z" for joint in made.joints[len(m.joints) :] if joint.type == "spherical")
+        return replace(
+            made,
+            loops=tuple(loops),
+            independent=(*self._tree.coordinates, *spins),
+            assembly=tuple(assembly.items()),
+        )
+
+    def _widest(self, modules: Mapping[int, Module]) -> Array:
+        """(n,) of some configurations the one furthest from where a parallelogram could fold.
+
+        There C_i, the joint's axis and the vertical are in one plane: turning the auxiliary link leaves |C_i D_i|.
+        """
+        tree, up = self._tree, upwards(self.mechanism)
+        q = sample(tree, POSES)
+        R = tree.poses(q).R
+        widths = []
+        for i, module in modules.items():
+            level = np.cross(self.links[i].axis, module.centre)
+            widths.append(np.abs(R[:, self._index[self.links[i].name]] @ level @ up) / np.linalg.norm(level))
+        return q[int(np.min(widths, axis=0).argmax())]
 
     def _foot(self, link: Segment, auxiliaries: Mapping[int, str]) -> tuple[str, Array]:
         """Where O^_{i-1} is: a body and a point in its frame, above O_{i-1}."""
@@ -103,6 +158,24 @@ class Builder:
             return auxiliaries[link.parent], link.tip
         body = link.joint.parent  # on an upright link: up is fixed in it
         return body, np.array(link.joint.xyz) + self.height * self._up(body)
+
+    def _beneath(self, link: Segment, auxiliaries: Mapping[int, str]) -> str:
+        """The body of the arm that has the orientation of what carries the auxiliary link."""
+        assert link.joint is not None
+        return self.links[link.parent].name if link.parent in auxiliaries else link.joint.parent
+
+    def _turn(self, a: str, b: str) -> Array:
+        """(3, 3) the orientation of body b in body a at q = 0."""
+        return self._home[self._index[a]].T @ self._home[self._index[b]]
+
+    def _stand(self, frame: str) -> Array:
+        """(3, 3) the axes of a pseudobase in its upright frame: with ball joints z is up, so that it spins about z."""
+        if not self.real:
+            return np.eye(3)
+        up = self._up(frame)
+        x = np.cross(up, np.eye(3)[int(np.abs(up).argmin())]).astype(float)
+        x /= float(np.linalg.norm(x))
+        return np.column_stack([x, np.cross(up, x), up])
 
     def _upright(self, i: int) -> str:
         """The upright link that carries link i."""

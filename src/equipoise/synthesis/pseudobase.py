@@ -37,6 +37,7 @@ def design(
     auxiliary_com: Given = None,
     pseudobase: Given = 0.0,
     planar: Sequence[str] | None = None,
+    real: bool = False,
 ) -> Design:
     """One spring for each link on whose moment gravity does work. The mechanism's own springs are replaced.
 
@@ -53,6 +54,7 @@ def design(
         auxiliary_com: the point of the link that its mass centre is above [m]; by default the link's own mass centre.
         pseudobase: mass of a pseudobase [kg].
         planar: links whose parallelogram is a planar four-bar; by default those whose axis stays horizontal.
+        real: hinges, ball joints and loops in the place of parallelogram joints.
 
     Raises:
         InputError: a bad value.
@@ -95,7 +97,7 @@ def design(
     sizes = spring_sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},  # (16)
                          {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
                          stiffness, l_CA=l_CA, l_CB=l_CB)  # fmt: skip
-    balanced = Builder(bare, links, height).build(modules, whole, sprung, sizes)
+    balanced = Builder(bare, links, height, real).build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
         "stiffness": {name: K for name, (K, _, _) in sizes.items()},
@@ -190,5 +192,6 @@ METHOD = Method(
         "auxiliary_com": Parameter("length", "x,y,z in the link's frame (default its com)", each=True, many=True),
         "pseudobase": Parameter("mass", "of a pseudobase (default 0)", each=True),
         "planar": Parameter("names", "A,B,...: links with a planar four-bar (default: all whose axis stays level)"),
+        "real": Parameter("flag", "hinges, ball joints and loops in place of parallelogram joints (default no)"),
     },
 )

@@ -1,0 +1,112 @@
+"""Drive a mechanism through a motion in the engine: what the actuators have to do, with and without springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import InputError
+from ..mechanism import Mechanism
+from .engine import Engine
+
+
+@dataclass(frozen=True)
+class Playback:
+    """A motion, and what it takes.
+
+    Attributes:
+        name: of the mechanism; coordinates, units: its own, and "rad" or "m" of each.
+        time: (T,) [s]; motion: (T, n) independent coordinates [rad or m].
+        torque, unsprung: (T, n) of the actuators with the springs and without them [N m or N].
+        gravity, springs: (T,) potential energies [J], each counted from its value at the start.
+        kinetic: (T,) [J].
+    """
+
+    name: str
+    coordinates: tuple[str, ...]
+    units: tuple[str, ...]
+    time: Array
+    motion: Array
+    torque: Array
+    unsprung: Array
+    gravity: Array
+    springs: Array
+    kinetic: Array
+
+    @property
+    def peak(self) -> tuple[Array, Array]:
+        """(n,) each: largest torque with springs and without [N m or N]."""
+        return np.abs(self.torque).max(axis=0), np.abs(self.unsprung).max(axis=0)
+
+    @property
+    def work(self) -> tuple[Array, Array]:
+        """(n,) each: what the actuators put in or take out, ``integral |torque rate| dt`` [J], with and without."""
+        rate = np.gradient(self.motion, self.time, axis=0)
+        sprung, bare = (np.trapezoid(np.abs(x * rate), self.time, axis=0) for x in (self.torque, self.unsprung))
+        return sprung, bare
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        (peak, bare_peak), (work, bare_work) = self.peak, self.work
+        return {
+            "seconds": float(self.time[-1] - self.time[0]),
+            "joints": [
+                {"joint": name, "peak": a, "peak_without_springs": b, "work": c, "work_without_springs": d}
+                for name, a, b, c, d in zip(
+                    self.coordinates, *(x.tolist() for x in (peak, bare_peak, work, bare_work)), strict=True
+                )
+            ],
+            "energy_variation": float(np.ptp(self.gravity + self.springs)),
+            "gravity_variation": float(np.ptp(self.gravity)),
+        }
+
+
+def play(mechanism: Mechanism, time: Array, motion: Array, radius: float | None = None) -> Playback:
+    """Inverse dynamics along a motion, by the engine.
+
+    Args:
+        time: (T,) [s], increasing; motion: (T, n) independent coordinates [rad or m], smooth.
+        radius: as `release`.
+
+    Raises:
+        InputError: the loops do not close somewhere, a joint leaves its range, or as `Engine`.
+    """
+    if len(time) < 3 or (np.diff(time) <= 0).any():
+        raise InputError("a motion needs at least three times, in increasing order")
+    sprung, bare = (Engine(m, radius) for m in (mechanism, mechanism.with_springs(())))
+    torque, total, kinetic = _torques(sprung, time, motion)
+    unsprung, gravity, _ = _torques(bare, time, motion)
+    springs = total - gravity
+    tree = sprung.tree
+    return Playback(
+        mechanism.name, tree.coordinates, tree.units, time, motion, torque, unsprung, gravity - gravity[0],
+        springs - springs[0], kinetic,
+    )  # fmt: skip
+
+
+def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, Array]:
+    """(T, n) torques, (T,) potential and kinetic energy."""
+    mj, model, data = engine._mj, engine.model, engine.data
+    placed = []
+    for q in motion:
+        engine.place(q)
+        placed.append(data.qpos.copy())
+    velocity = np.zeros((len(time), model.nv))
+    for i in range(len(time)):
+        a, b = max(i - 1, 0), min(i + 1, len(time) - 1)
+        mj.mj_differentiatePos(model, velocity[i], time[b] - time[a], placed[a], placed[b])
+    velocity[0] = velocity[-1] = 0.0 if np.allclose(motion[0], motion[1], atol=1e-12) else velocity[0]
+    acceleration = np.gradient(velocity, time, axis=0)
+    torques, potential, kinetic = [], [], []
+    for qpos, qvel, qacc in zip(placed, velocity, acceleration, strict=True):
+        data.qpos[:], data.qvel[:] = qpos, qvel
+        mj.mj_forward(model, data)
+        inertial = np.zeros(model.nv)
+        mj.mj_mulM(model, data, inertial, qacc)
+        torques.append(engine.at_coordinates(inertial + data.qfrc_bias - data.qfrc_passive))
+        potential.append(data.energy[0])
+        kinetic.append(data.energy[1])
+    return np.array(torques), np.array(potential), np.array(kinetic)
