@@ -1,0 +1,288 @@
+"""Simulation in MuJoCo: what is exact stays where it is left, what is not moves, motions take what mechanics says."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from loop_zoo import four_bar
+from robots import robot
+from zoo import G, exact_pendulum, lenzo_spherical, parallelogram_lamp, pendulum
+
+import equipoise as eq
+from equipoise.errors import EquipoiseWarning, InputError
+from equipoise.kinematics import Tree
+from equipoise.kinematics.sampling import sample
+from equipoise.reproduce import cho2012, lin2010
+from equipoise.simulate import Engine, EngineError, play, release
+from equipoise.synthesis.delta_robot import DeltaRobot
+
+SPHERE = 0.05  # [m]
+DEGREE = np.pi / 180
+INERTIA = (0.01, 0.01, 0.01, 0.0, 0.0, 0.0)
+
+
+@cache
+def ur5() -> eq.Mechanism:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EquipoiseWarning)
+        return eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
+
+
+@cache
+def delta() -> eq.Mechanism:
+    """Full balance with data of which nothing is special."""
+    bare = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, com_2=0.15, com_4=0.3).mechanism()
+    masses = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35, "spring_7": 1.8, "spring_10": 0.5}
+    return eq.design(bare, "delta", BF=0.12, CS=0.1, **masses).mechanism
+
+
+def with_inertia(m: eq.Mechanism) -> eq.Mechanism:
+    return replace(m, bodies=tuple(replace(body, inertia=INERTIA) for body in m.bodies))
+
+
+# Staying ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_pendulum_stays_and_a_soft_spring_moves_it():
+    found = release(with_inertia(exact_pendulum().mechanism), seconds=3, poses=5, tolerance=1e-9)
+    assert found.stays
+    assert found.meaningful
+    assert found.design.largest < 1e-12
+    assert found.control is not None
+    # 1 % of m g l over the inertia, from rest: no faster than free fall with a hundredth of gravity
+    inertia = INERTIA[1] + 2.0 * 0.3**2
+    fastest = 0.5 * 0.01 * 2.0 * G * 0.3 / inertia * 3**2
+    assert 0.01 < found.control.largest < fastest
+    assert found.control.energy.max() < 1e-9
+
+
+def test_without_springs_it_falls():
+    m = with_inertia(pendulum()).with_springs(())
+    found = release(m, seconds=2, poses=3)
+    assert not found.stays
+    assert found.control is None
+    # free of damping it reaches the mirrored angle about straight down
+    _, joint = found.worst
+    assert joint == "shoulder"
+    np.testing.assert_allclose(found.design.holding, found.unbalanced)
+    np.testing.assert_allclose(found.design.holding[:, 0], 2.0 * G * 0.3 * np.cos(found.poses[:, 0]), rtol=1e-9)
+
+
+def test_the_control_is_the_spring_that_is_felt_most():
+    m = with_inertia(lenzo_spherical().mechanism)
+    weak = replace(m.springs[0], name="weak", stiffness=1e-3)
+    found = release(m.with_springs((weak, *m.springs)), seconds=0.5, poses=2, tolerance=1e-2)
+    assert found.soft in {spring.name for spring in m.springs}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["pendulum", "lenzo", "bevel"])
+def test_exact_designs_stay(name):
+    """20 poses, 10 s: below 1e-6 rad, and the control moves by more than 1 degree from every pose."""
+    m = {
+        "pendulum": exact_pendulum().mechanism,
+        "lenzo": lenzo_spherical().mechanism,
+        "bevel": cho2012.balanced().mechanism,
+    }[name]
+    found = release(m, seconds=10, poses=20, tolerance=1e-6, radius=SPHERE)
+    assert found.stays, found.design.largest
+    assert found.control is not None
+    assert found.control.moved.max(axis=1).min() > DEGREE
+
+
+@pytest.mark.slow
+def test_a_balanced_ur5_stays():
+    found = release(ur5(), seconds=10, poses=10, tolerance=1e-4)
+    assert found.stays
+    assert found.design.largest < 1e-9
+    assert found.meaningful
+    fallen = release(ur5().with_springs(()), seconds=1, poses=3)
+    assert not fallen.stays
+    assert fallen.design.largest > 10 * DEGREE
+
+
+def test_parallelograms_stay():
+    found = release(parallelogram_lamp().mechanism, seconds=1, poses=3, tolerance=1e-7, radius=SPHERE)
+    assert found.stays
+    assert found.design.constraint_error < 1e-8
+    assert "equalities" in str(found.settings)
+
+
+# Real linkages ------------------------------------------------------------------------------------------------------
+
+
+def held(m: eq.Mechanism, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Holding torques with and without springs, by the engine, and the largest opening of a loop [m]."""
+    sprung, bare, error = Engine(m, SPHERE), Engine(m.with_springs(()), SPHERE), 0.0
+    found = []
+    for engine in (sprung, bare):
+        torques = []
+        for one in q:
+            engine.place(one)
+            torques.append(engine.holding())
+            error = max(error, engine.constraint_error)
+        found.append(np.array(torques))
+    return found[0], found[1], error
+
+
+@pytest.mark.slow
+def test_the_arm_of_lin2010_with_its_ball_joints():
+    m = lin2010.balanced(real=True).mechanism
+    tree = Tree.of(m)
+    assert (tree.mobility.numerical, len(m.loops)) == (11, 5)  # 6 active, 5 idle
+    q = sample(tree, 50, 3)
+    with_springs, without, error = held(m, q)
+    assert np.abs(with_springs).max() < 1e-9 * np.abs(without).max()
+    assert error < 1e-12
+    spun = q.copy()
+    spun[:, 6:] += np.random.default_rng(0).uniform(-1, 1, spun[:, 6:].shape)
+    np.testing.assert_allclose(held(m, spun)[1][:, :6], without[:, :6], atol=1e-9)
+    np.testing.assert_allclose(without[:, 6:], 0, atol=1e-9)
+    found = release(m, seconds=0.5, poses=2, tolerance=1e-2, radius=SPHERE)
+    assert found.stays
+    assert found.design.constraint_error < 1e-5
+    ours = eq.check(m, samples=50).residual.max
+    assert np.abs(with_springs).max() < 1e-9 * np.abs(without).max() > 0
+    assert ours.max() < 1e-9 * np.abs(without).max()
+
+
+@pytest.mark.slow
+def test_a_delta_robot_with_its_rod_pairs():
+    m = delta()
+    q = sample(Tree.of(m), 50, 3)
+    with_springs, without, error = held(m, q)
+    assert np.abs(with_springs).max() < 1e-9 * np.abs(without).max()
+    assert error < 1e-12
+    found = release(m, seconds=0.5, poses=2, tolerance=1e-5, radius=SPHERE)
+    assert found.stays
+    assert found.design.constraint_error < 1e-5
+    # what is not balanced agrees with ours, through the loops
+    from equipoise.energy.potential import Potential
+
+    np.testing.assert_allclose(without, Potential(m.with_springs(()))(q).torque, rtol=1e-8, atol=1e-8)
+
+
+# Motions ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_pendulum_driven():
+    """I q'' with the springs, and m g l cos q more without them."""
+    m = with_inertia(exact_pendulum().mechanism)
+    t = np.linspace(0, 2, 2001)
+    q = 0.3 + 0.5 * (1 - np.cos(np.pi * t))
+    found = play(m, t, q[:, None])
+    inertia = INERTIA[1] + 2.0 * 0.3**2
+    expected = inertia * 0.5 * np.pi**2 * np.cos(np.pi * t)
+    inner = slice(5, -5)
+    np.testing.assert_allclose(found.torque[inner, 0], expected[inner], atol=1e-4)
+    np.testing.assert_allclose(found.unsprung[inner, 0], (expected + 2 * G * 0.3 * np.cos(q))[inner], atol=1e-4)
+    assert np.ptp(found.gravity + found.springs) < 1e-12
+    np.testing.assert_allclose(found.gravity, 2 * G * 0.3 * (np.sin(q) - np.sin(q[0])), atol=1e-12)
+    (peak, bare), (work, bare_work) = found.peak, found.work
+    assert peak[0] < 0.3 * bare[0]
+    assert work[0] < bare_work[0]
+
+
+@pytest.mark.slow
+def test_the_motion_of_lin2010():
+    """Eq. (26): the engine's energies are those of the paper's Fig. 9, and their sum is constant."""
+    m = lin2010.balanced().mechanism
+    every = slice(None, None, 10)
+    found = play(m, lin2010.TIMES[every], lin2010.motion()[every], SPHERE)
+    assert np.ptp(found.gravity + found.springs) < 1e-9 * np.ptp(found.gravity)
+    from equipoise.energy.potential import Potential
+
+    ours = Potential(m)(lin2010.motion()[every]).gravity
+    np.testing.assert_allclose(found.gravity, ours - ours[0], atol=1e-6 * np.ptp(ours))
+    assert (found.peak[0][1:5] < found.peak[1][1:5]).all()
+
+
+# What is refused ----------------------------------------------------------------------------------------------------
+
+
+def test_a_missing_inertia_is_named():
+    with pytest.raises(InputError, match=r"bodies.arm.inertia: motion depends on it, of 'arm': .*--radius 50mm"):
+        release(exact_pendulum().mechanism)
+
+
+def test_a_pose_outside_the_limits_is_named():
+    m = with_inertia(pendulum())
+    limited = replace(m, joints=(replace(m.joints[0], range=(-0.5, 0.5)),))
+    with pytest.raises(InputError, match="joint 'shoulder' of body 'arm' is at 57.2958 deg, its range is -28.6479 to"):
+        Engine(limited).place(np.array([1.0]))
+    engine = Engine(four_bar(independent=("rocker",)), SPHERE)
+    with pytest.raises(InputError, match=r"the loops of 'four-bar' do not close at rocker -1 \[rad or m\]"):
+        engine.place(np.array([-1.0]))
+
+
+def test_a_simulation_that_diverges_says_where():
+    m = pendulum(stiffness=1e13)
+    light = replace(m, bodies=(replace(m.bodies[0], mass=1e-6, inertia=(1e-12, 1e-12, 1e-12, 0, 0, 0)),))
+    with pytest.raises(EngineError, match="diverged at .* s, first at body 'arm' .joint 'shoulder'."):
+        release(light, seconds=1, poses=1, control=False)
+
+
+@pytest.mark.parametrize(("option", "value"), [("seconds", 0), ("tolerance", -1), ("poses", 0)])
+def test_bad_values(option, value):
+    with pytest.raises(InputError, match=option):
+        release(with_inertia(pendulum()), **{option: value})
+
+
+# The command line ---------------------------------------------------------------------------------------------------
+
+PENDULUM = Path(__file__).parents[1] / "examples" / "mechanisms" / "pendulum.yaml"
+
+
+def test_command_line(run):
+    options = ("--seconds", "1", "--poses", "2", "--radius", "50mm")
+    code, text, _ = run("simulate", PENDULUM, *options)
+    assert code == 0
+    assert "STAYS" in text
+    assert "control, 'shoulder spring' 1 % soft: drifts by" in text
+    code, text, _ = run("simulate", PENDULUM, *options, "--json", "--no-control")
+    found = json.loads(text)
+    assert found.keys() >= {"poses", "seconds", "max_drift", "rms_drift"}
+    assert (code, found["poses"], found["control"]) == (0, 2, None)
+    code, text, _ = run("simulate", PENDULUM, *options, "--seconds", "0.2", "--tolerance", "1 deg")
+    assert "TOO LITTLE: staying proves nothing" in text
+
+
+def test_command_line_says_no(run, tmp_path):
+    loose = tmp_path / "loose.yaml"
+    eq.save(with_inertia(pendulum(150.0)), loose)
+    code, text, _ = run("simulate", loose, "--seconds", "1", "--poses", "2")
+    assert code == 1
+    assert text.startswith("MOVES: 'shoulder' drifts by")
+
+
+def test_command_line_motion(run, tmp_path):
+    picture = tmp_path / "motion.svg"
+    code, text, _ = run("simulate", PENDULUM, "--radius", "50mm", "--move", "shoulder:0:2:0:60 deg", "--plot", picture)
+    assert code == 0
+    assert "gravity's energy varies by" in text
+    assert picture.read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((), "bodies.arm.inertia"),
+        (("--radius", "-5mm"), "--radius: must be more than 0 m"),
+        (("--radius", "5kg"), "--radius: expected a number"),
+        (("--move", "shoulder:0:2"), "expected JOINT:START:END:FROM:TO"),
+        (("--move", "knee:0:2:0:1"), "no coordinate 'knee'"),
+        (("--move", "shoulder:2:1:0:1"), "must end after it starts"),
+        (("--move", "shoulder:0:2:0:1 kg"), "--move: expected a number"),
+        (("--plot", "x.svg"), "is of a motion"),
+    ],
+)
+def test_command_line_refuses(run, options, message):
+    code, text, error = run("simulate", PENDULUM, *options)
+    assert (code, text) == (2, "")
+    assert message in error
