@@ -17,6 +17,7 @@ from zoo import G, exact_pendulum, lenzo_spherical, parallelogram_lamp, pendulum
 import equipoise as eq
 from equipoise.errors import EquipoiseWarning, InputError
 from equipoise.kinematics import Tree
+from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
 from equipoise.reproduce import cho2012, lin2010
 from equipoise.simulate import Engine, EngineError, play, release
@@ -135,6 +136,7 @@ def held(m: eq.Mechanism, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]
 def test_the_arm_of_lin2010_with_its_ball_joints():
     m = lin2010.balanced(real=True).mechanism
     tree = Tree.of(m)
+    assert isinstance(tree, Linkage)
     assert (tree.mobility.numerical, len(m.loops)) == (11, 5)  # 6 active, 5 idle
     q = sample(tree, 50, 3)
     with_springs, without, error = held(m, q)
@@ -214,7 +216,7 @@ def test_a_missing_inertia_is_named():
 def test_a_pose_outside_the_limits_is_named():
     m = with_inertia(pendulum())
     limited = replace(m, joints=(replace(m.joints[0], range=(-0.5, 0.5)),))
-    with pytest.raises(InputError, match="joint 'shoulder' of body 'arm' is at 57.2958 deg, its range is -28.6479 to"):
+    with pytest.raises(InputError, match=r"joint 'shoulder' of body 'arm' is at 57.2958 deg, its range is -28.6479 to"):
         Engine(limited).place(np.array([1.0]))
     engine = Engine(four_bar(independent=("rocker",)), SPHERE)
     with pytest.raises(InputError, match=r"the loops of 'four-bar' do not close at rocker -1 \[rad or m\]"):
@@ -224,7 +226,7 @@ def test_a_pose_outside_the_limits_is_named():
 def test_a_simulation_that_diverges_says_where():
     m = pendulum(stiffness=1e13)
     light = replace(m, bodies=(replace(m.bodies[0], mass=1e-6, inertia=(1e-12, 1e-12, 1e-12, 0, 0, 0)),))
-    with pytest.raises(EngineError, match="diverged at .* s, first at body 'arm' .joint 'shoulder'."):
+    with pytest.raises(EngineError, match=r"diverged at .* s, first at body 'arm' .joint 'shoulder'."):
         release(light, seconds=1, poses=1, control=False)
 
 
@@ -250,7 +252,7 @@ def test_command_line(run):
     assert found.keys() >= {"poses", "seconds", "max_drift", "rms_drift"}
     assert (code, found["poses"], found["control"]) == (0, 2, None)
     code, text, _ = run("simulate", PENDULUM, *options, "--seconds", "0.2", "--tolerance", "1 deg")
-    assert "TOO LITTLE: staying proves nothing" in text
+    assert "TOO LITTLE: staying proves nothing" in " ".join(text.split())
 
 
 def test_command_line_says_no(run, tmp_path):

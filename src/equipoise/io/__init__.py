@@ -1,8 +1,9 @@
-"""Mechanism files: `load` reads YAML and URDF, `save` writes YAML."""
+"""Mechanism files: `load` reads YAML, URDF and MJCF, `save` writes YAML."""
 
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,14 @@ if TYPE_CHECKING:
 
 YAML_SUFFIXES = (".yaml", ".yml")
 URDF_SUFFIXES = (".urdf", ".xml")
+MJCF_SUFFIXES = (".mjcf", ".xml")
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
 def load(path: str | os.PathLike[str]) -> Mechanism:
-    """Read a mechanism file; the suffix says which kind: .yaml or .yml, .urdf or .xml.
+    """Read a mechanism file; the suffix says which kind: .yaml or .yml, .urdf, .mjcf.
+
+    In a file .xml the root element says it.
 
     Raises:
         InputError: everything that is wrong with the file, with file, line and column.
@@ -27,12 +31,16 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
         from . import yaml
 
         return yaml.read(path)
+    if suffix in MJCF_SUFFIXES and (suffix not in URDF_SUFFIXES or _is_mjcf(path)):
+        from . import mjcf_read
+
+        return mjcf_read.read(path)
     if suffix in URDF_SUFFIXES:
         from . import urdf
 
         return urdf.read(Path(path))
     found = f"a mechanism file cannot be {_suffix(path)}"
-    raise InputError(Fault((), found, (*YAML_SUFFIXES, *URDF_SUFFIXES), file=os.fspath(path)))
+    raise InputError(Fault((), found, (*YAML_SUFFIXES, *URDF_SUFFIXES, MJCF_SUFFIXES[0]), file=os.fspath(path)))
 
 
 def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
@@ -60,6 +68,15 @@ def check_savable(path: str | os.PathLike[str]) -> None:
         found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
         raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
     check_writable(path)
+
+
+def _is_mjcf(path: str | os.PathLike[str]) -> bool:
+    """Whether the first element of an XML file is MJCF's: comments and declarations may come before it."""
+    from .files import read_text
+
+    text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
+    first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
+    return first is not None and first[1] == "mujoco"
 
 
 def _suffix(path: str | os.PathLike[str]) -> str:

@@ -204,8 +204,7 @@ class Engine:
             S[names.index(name), j] = 1.0
         weight = np.linalg.norm(J, axis=1, keepdims=True)
         A = np.hstack([S, (J / np.where(weight > 0, weight, 1.0)).T])
-        found: Array = np.linalg.lstsq(A, E.T @ force, rcond=1e-11)[0]
-        return found[: self.tree.n]
+        return np.asarray(np.linalg.lstsq(A, E.T @ force, rcond=1e-11)[0], float)[: self.tree.n]
 
     def _rates(self) -> tuple[Array, list[str]]:
         """(nv, scalars) the engine's velocities per rate of each scalar joint value, and the names of these."""
