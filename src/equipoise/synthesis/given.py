@@ -16,20 +16,22 @@ Given = Value | Mapping[str, Value] | None
 """One value for all links, or link -> value with the value for all others under "*"."""
 
 
-def numbers(option: str, given: Given, names: Sequence[str], positive: bool) -> dict[str, float]:
-    """The number for each link that has one, more than 0 or at least 0."""
+def numbers(option: str, given: Given, names: Sequence[str], positive: bool | None) -> dict[str, float]:
+    """The number for each link that has one: more than 0, at least 0, or (None) any."""
     return {name: number(option, value, positive) for name, value in _each(option, given, names).items()}
 
 
-def number(option: str, value: Any, positive: bool) -> float:
-    """The value, when it is a finite number more than 0, or at least 0.
+def number(option: str, value: Any, positive: bool | None) -> float:
+    """The value, when it is a finite number more than 0, at least 0, or (None) any.
 
     Raises:
         InputError: it is not.
     """
-    limit = "more than" if positive else "at least"
-    if not (isinstance(value, (int, float)) and isfinite(value) and value >= 0 and (value > 0 or not positive)):
-        raise InputError(Fault((option,), f"must be a finite number of {limit} 0, found {value}"))
+    limit = {True: " of more than 0", False: " of at least 0", None: ""}[positive]
+    if not (isinstance(value, (int, float)) and isfinite(value) and (positive is None or value >= 0)) or (
+        positive and value == 0
+    ):
+        raise InputError(Fault((option,), f"must be a finite number{limit}, found {value}"))
     return float(value)
 
 
@@ -55,5 +57,5 @@ def _each(option: str, given: Given, names: Sequence[str]) -> dict[str, Value]:
         return dict.fromkeys(names, given)
     for name in given:
         if name != "*" and name not in names:
-            raise InputError(Fault((option,), f"no link that takes it {nearest(name, names)}", tuple(names)))
+            raise InputError(Fault((option,), f"nothing that takes it is called {nearest(name, names)}", tuple(names)))
     return {name: given.get(name, given.get("*")) for name in names if name in given or "*" in given}  # type: ignore[misc]

@@ -11,9 +11,8 @@ straight arm they are real: on the link's line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import islice, product
 from math import inf, log
 
 import numpy as np
@@ -22,12 +21,14 @@ from ..arrays import Array, Complexes
 from ..energy.planar import Installation, PlanarArm
 from .exclusion import Layout
 
-STARTS = 60  # tried at most
-ENOUGH = 8  # solutions to choose the least energy from
+STARTS = 40  # tried at most
+ENOUGH = 6  # solutions to choose the least energy from
 WEIGHTS = (0.3, 0.05, 0.005)  # of the square root of the energy, one fit after the other
-SMALL, LARGE = 1e-3, 1e3  # attachments of a spring that belongs to its layout, in link lengths
+SMALL, LARGE = 0.02, 1e3  # attachments of a spring that belongs to its layout, in longest links
+SOFT = 1e-4  # of the stiffest spring: softer ones count as absent
 EXACT = 1e-13  # of the largest moment
-STOCK = 200  # choices from stock that are tried
+FIT = 30  # evaluations: further ones would only trade the equations for energy
+LIMITS = (1.5, 3.0, 6.0, inf)  # in longest links: tried in turn when no limit is given
 STIFFNESS, A, B = range(3)
 
 Fixed = Mapping[tuple[int, int], float]
@@ -162,7 +163,7 @@ class Equations:
             stored = weight * self._real(energy.reshape(len(z) * self.arm.n, -1))
             return np.concatenate([self.blocks(z)[1], stored, self._out(z)[1]])[:, free]
 
-        return full(least_squares(rows, x.ravel()[free], slopes, max_nfev=100).x)
+        return full(least_squares(rows, x.ravel()[free], slopes, max_nfev=FIT).x)
 
     def _out(self, x: Array) -> tuple[Array, Array]:
         """Rows (2 springs,) that are 0 for attachments within the limit, and their derivative."""
@@ -193,8 +194,11 @@ class Equations:
         """Whether no spring has shrunk into one of another layout, and all lie within the limit."""
         k, a, b = self.unpacked(x)
         ends = np.abs(np.concatenate([a, b]))
+        if any(k == i + 1 for i, k in self.layout):  # of these only k a b counts, and `installed` chooses the rest
+            between = [s for s, (i, j) in enumerate(self.layout) if j == i + 1]
+            ...
         inside = ends.max() <= min(LARGE, self.limit / self.size)
-        return bool(inside and ends.min() >= SMALL and k.min() >= SMALL**2 * k.max())
+        return bool(inside and ends.min() >= SMALL and k.min() >= SOFT * k.max())
 
     def stored(self, x: Array) -> float:
         """Stored energy in our units: constant, but for what gravity takes from it."""
@@ -234,28 +238,37 @@ class Equations:
                 break
         return min(found, key=self.stored, default=None)
 
-    def from_stock(self, stock: Array, seed: int = 0, report: Callable[[float], None] = lambda share: None) -> (
-        tuple[Array, Equations] | None
-    ):  # fmt: skip
-        """A solution with stiffnesses from a list [N/m], and the equations with these fixed: near the free solution."""
-        free = self.solve(seed)
-        if free is None:
-            return None
-        wanted = [one.stiffness for one in self.installed(free)]
-        choices = [
-            [self.fixed[s, STIFFNESS]] if (s, STIFFNESS) in self.fixed else sorted(stock, key=lambda k, w=w: abs(log(k / w)))[:4]
-            for s, w in enumerate(wanted)
-        ]  # fmt: skip
 
-        def off(chosen: tuple[float, ...]) -> float:
-            return sum(log(k / w) ** 2 for k, w in zip(chosen, wanted, strict=True))
+@dataclass(frozen=True)
+class Solution:
+    """Unknowns that satisfy the equations."""
 
-        tried = list(islice(sorted(product(*choices), key=off), STOCK))
-        for number, chosen in enumerate(tried):
-            report(number / len(tried))
-            fixed = {**self.fixed, **{(s, STIFFNESS): float(k) for s, k in enumerate(chosen)}}
-            equations = Equations(self.arm, self.layout, self.limit, fixed)
-            x = equations.solve(seed, starts=4, near=free)
-            if x is not None:
-                return x, equations
-        return None
+    equations: Equations
+    x: Array
+
+    @property
+    def springs(self) -> tuple[Installation, ...]:
+        """The springs."""
+        return tuple(self.equations.installed(self.x))
+
+    @property
+    def energy(self) -> float:
+        """[J] stored, gravity's energy counted from the first joint."""
+        return self.equations.stored(self.x) * self.equations.energy
+
+
+def solve(
+    arm: PlanarArm, layout: Layout, limit: float | None = None, fixed: Fixed | None = None, seed: int = 0
+) -> Solution | None:
+    """Springs of a layout that balance the arm and store little, None when none were found.
+
+    Args:
+        limit: [m] of the attachments; without one they are kept as close as some multiple of the longest link.
+    """
+    size = Equations(arm, layout).size
+    for most in (limit,) if limit is not None else (share * size for share in LIMITS):
+        equations = Equations(arm, layout, most, fixed or {})
+        x = equations.solve(seed)
+        if x is not None:
+            return Solution(equations, x)
+    return None

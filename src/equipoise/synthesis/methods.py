@@ -7,11 +7,11 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import convex, pseudobase
+from . import convex, planar, pseudobase
 from .design import Design
 from .method import Method
 
-METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in (convex, pseudobase)}
+METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in (convex, pseudobase, planar)}
 
 
 def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
