@@ -17,7 +17,8 @@ from math import inf, log
 
 import numpy as np
 
-from ..arrays import Array, Complexes
+from ..arrays import Array, Booleans, Complexes
+from ..energy.blocks import StiffnessBlocks
 from ..energy.planar import Installation, PlanarArm
 from .exclusion import Layout
 
@@ -88,12 +89,12 @@ class Equations:
                 x[spring, columns[0]] = value / self.size
         return x
 
-    def free(self) -> Array:
-        """(springs * width,) numbers of the unknowns that are not fixed."""
-        open_ = np.ones((len(self.layout), self.width), bool)
+    def free(self) -> Booleans:
+        """(springs * width,) which unknowns are not fixed."""
+        free = np.ones((len(self.layout), self.width), bool)
         for spring, which in self.fixed:
-            open_[spring, self._columns(which)] = False
-        return np.flatnonzero(open_)
+            free[spring, self._columns(which)] = False
+        return free.ravel()
 
     def _columns(self, which: int) -> list[int]:
         if which == STIFFNESS:
@@ -163,7 +164,8 @@ class Equations:
             stored = weight * self._real(energy.reshape(len(z) * self.arm.n, -1))
             return np.concatenate([self.blocks(z)[1], stored, self._out(z)[1]])[:, free]
 
-        return full(least_squares(rows, x.ravel()[free], slopes, max_nfev=FIT).x)
+        found = least_squares(rows, x.ravel()[free], jac=slopes, max_nfev=FIT)  # pyright: ignore[reportArgumentType]
+        return full(found.x)
 
     def _out(self, x: Array) -> tuple[Array, Array]:
         """Rows (2 springs,) that are 0 for attachments within the limit, and their derivative."""
@@ -181,7 +183,7 @@ class Equations:
         free = self.free()
         for _ in range(steps):
             e, J = self.blocks(x)
-            if not len(free) or not np.isfinite(e).all():
+            if not free.any() or not np.isfinite(e).all():
                 break
             step = np.zeros(x.size)
             step[free] = -np.linalg.lstsq(J[:, free], e, rcond=1e-9)[0]
@@ -190,71 +192,65 @@ class Equations:
                 break
         return x if np.abs(self.blocks(x)[0]).max() < EXACT else None
 
-    def belongs(self, x: Array) -> bool:
-        """Whether no spring has shrunk into one of another layout, and all lie within the limit."""
-        k, a, b = self.unpacked(x)
+    def installed(self, x: Array) -> tuple[Installation, ...] | None:
+        """The springs; None when one has shrunk into a spring of another layout, or sticks out of the limit."""
+        k, a, b = self._settled(*self.unpacked(x))
         ends = np.abs(np.concatenate([a, b]))
-        if any(k == i + 1 for i, k in self.layout):  # of these only k a b counts, and `installed` chooses the rest
-            between = [s for s, (i, j) in enumerate(self.layout) if j == i + 1]
-            ...
-        inside = ends.max() <= min(LARGE, self.limit / self.size)
-        return bool(inside and ends.min() >= SMALL and k.min() >= SOFT * k.max())
+        inside = ends.min() >= SMALL and ends.max() <= min(LARGE, self.limit / self.size)
+        if not inside or k.min() < SOFT * k.max():
+            return None
+        stiffness, size = k * self.energy / self.size**2, self.size
+        return tuple(
+            Installation(i, j, float(stiffness[s]), complex(a[s] * size * upward(i)), complex(b[s] * size))
+            for s, (i, j) in enumerate(self.layout)
+        )
 
-    def stored(self, x: Array) -> float:
-        """Stored energy in our units: constant, but for what gravity takes from it."""
-        return 0.5 * float((np.abs(self.vectors(x)[0]) ** 2).sum())
-
-    def installed(self, x: Array) -> list[Installation]:
-        """The springs. One between neighbours acts by k a b alone: its ends are put half a link, or limit, out."""
-        k, a, b = self.unpacked(x)
+    def _settled(self, k: Array, a: Complexes, b: Complexes) -> tuple[Array, Complexes, Complexes]:
+        """A spring between neighbours acts by k a b alone: its ends are put half a link, or limit, out."""
         half = min(1.0, self.limit / self.size) / 2
+        held = {spring for spring, _ in self.fixed}
         for s, (i, j) in enumerate(self.layout):
-            if j == i + 1 and not any(spring == s for spring, _ in self.fixed):
+            if j == i + 1 and s not in held and a[s] and b[s]:
                 k[s] *= abs(a[s]) * abs(b[s]) / half**2
                 turn = b[s] / abs(b[s])  # equivalent installations: both angles turned alike
                 a[s], b[s] = half * a[s] / abs(a[s]) / turn, half
-        stiffness = k * self.energy / self.size**2
-        return [
-            Installation(i, j, float(stiffness[s]), complex(a[s] * self.size * upward(i)), complex(b[s] * self.size))
-            for s, (i, j) in enumerate(self.layout)
-        ]
+        return k, a, b
 
-    def solve(self, seed: int = 0, starts: int = STARTS, near: Array | None = None) -> Array | None:
-        """Of the solutions found the one that stores least, None when none is.
+    def solve(self, seed: int = 0, starts: int = STARTS, near: Array | None = None) -> Solution | None:
+        """Of the solutions found the one that stores least, None when none is found.
 
         Args:
             near: where to start from, before the random starts.
         """
         generator = np.random.default_rng(seed)
-        found: list[Array] = []
+        found: list[Solution] = []
         for number in range(starts):
             x = self.held(near) if number == 0 and near is not None else self.start(generator)
             for weight in WEIGHTS:
                 x = self.fit(x, weight)
             x = self.newton(x)
-            if x is not None and self.belongs(x):
-                found.append(x)
+            springs = None if x is None else self.installed(x)
+            if x is not None and springs is not None:
+                found.append(Solution(self, x, springs))
             if len(found) == ENOUGH:
                 break
-        return min(found, key=self.stored, default=None)
+        return min(found, key=lambda one: one.energy, default=None)
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Unknowns that satisfy the equations."""
+    """Unknowns that satisfy the equations, and the springs that they stand for."""
 
     equations: Equations
     x: Array
-
-    @property
-    def springs(self) -> tuple[Installation, ...]:
-        """The springs."""
-        return tuple(self.equations.installed(self.x))
+    springs: tuple[Installation, ...]
 
     @property
     def energy(self) -> float:
-        """[J] stored, gravity's energy counted from the first joint."""
-        return self.equations.stored(self.x) * self.equations.energy
+        """[J] what the springs store, summed over their parts along each link; gravity takes from it what it gives."""
+        arm = self.equations.arm
+        blocks = (StiffnessBlocks.spring(arm, one).K.diagonal().real for one in self.springs)
+        return float(sum(0.5 * (K * arm.lengths**2).sum() for K in blocks))
 
 
 def solve(
@@ -267,8 +263,7 @@ def solve(
     """
     size = Equations(arm, layout).size
     for most in (limit,) if limit is not None else (share * size for share in LIMITS):
-        equations = Equations(arm, layout, most, fixed or {})
-        x = equations.solve(seed)
-        if x is not None:
-            return Solution(equations, x)
+        found = Equations(arm, layout, most, fixed or {}).solve(seed)
+        if found is not None:
+            return found
     return None

@@ -179,9 +179,9 @@ def _from_stock(free: Solution, stock: Sequence[float], seed: int, progress: Pro
         if progress is not None:
             progress("choosing from stock", number_ / len(tried))
         held = Equations(of.arm, of.layout, of.limit, {**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
-        x = held.solve(seed, starts=4, near=free.x)
-        if x is not None:
-            return Solution(held, x)
+        found = held.solve(seed, starts=4, near=free.x)
+        if found is not None:
+            return found
     return None
 
 
