@@ -55,7 +55,7 @@ def failures(layout: Layout, n: int) -> Iterator[Failure]:
 
 def objections(layout: Layout, n: int, objective: Objective) -> Iterator[Failure]:
     """What else the paper asks for one objective: S1-S3 for the fewest springs, J1-J4 for the smallest span."""
-    yield from _SPRINGS(layout, n) if objective == "springs" else _SPAN(layout, n)
+    yield from _fewest_springs(layout, n) if objective == "springs" else _smallest_span(layout, n)
 
 
 def sign_objections(springs: Sequence[Installation], n: int) -> Iterator[Failure]:
@@ -104,7 +104,7 @@ def _G5(layout: Layout, n: int) -> Iterator[Failure]:
                 yield Failure("G5", f"at links {u}-{v}: one spring alone acts there")
 
 
-def _SPRINGS(layout: Layout, n: int) -> Iterator[Failure]:
+def _fewest_springs(layout: Layout, n: int) -> Iterator[Failure]:
     if (1, n) not in layout:
         yield Failure("S1", f"at links 1-{n}: no spring between ground and end link")
     ends = layout.count((1, n)) + layout.count((2, n)) if n > 2 else 2
@@ -115,7 +115,7 @@ def _SPRINGS(layout: Layout, n: int) -> Iterator[Failure]:
             yield Failure("S3", f"at link {v}: {layout.count((1, v))} springs to it from the ground, not one")
 
 
-def _SPAN(layout: Layout, n: int) -> Iterator[Failure]:
+def _smallest_span(layout: Layout, n: int) -> Iterator[Failure]:
     for i, k in sorted({pair for pair in layout if layout.count(pair) > 1}):
         yield Failure("J1", f"at links {i}-{k}: {layout.count((i, k))} springs")
     for name, pair in (("J2", (1, n)), ("J3", (2, n))):

@@ -21,9 +21,10 @@ from ..mechanism import Mechanism
 from ..validate import whole_number
 from .criteria import failures
 from .design import Design
-from .exclusion import Layout, Leaf, Proof, prove
+from .exclusion import Layout, prove
 from .given import Given, number, numbers
 from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
+from .layouts import Excluded, default_layout, labels, name
 from .method import Method, Parameter
 from .problem import Progress
 
@@ -85,25 +86,6 @@ def design(
     return designed
 
 
-def default_layout(n: int) -> Layout:
-    """13, 14, .., 1n, 2n: the fewest springs and the smallest span at once (section 7.2)."""
-    return ((1, 2),) if n == 2 else (*((1, k) for k in range(3, n + 1)), (2, n))
-
-
-def name(layout: Layout) -> str:
-    """``13,14,24``; with dashes where a link's number has two digits."""
-    dash = "-" if any(k > 9 for _, k in layout) else ""
-    return ",".join(f"{i}{dash}{k}" for i, k in layout)
-
-
-def labels(layout: Layout) -> list[str]:
-    """A name for each spring: 13, and 14_1, 14_2 where there are several, as in the paper's Table 5."""
-    names = [name((pair,)) for pair in layout]
-    return [
-        one if names.count(one) == 1 else f"{one}_{names[: s + 1].count(one)}" for s, one in enumerate(names)
-    ]  # fmt: skip
-
-
 def reason(arm: PlanarArm, layout: Layout) -> str | None:
     """Why a layout cannot balance an arm, proved; None when it may."""
     weight = arm.moments[1:] / arm.lengths[1:]
@@ -111,19 +93,10 @@ def reason(arm: PlanarArm, layout: Layout) -> str | None:
     gaps = np.diff(weight[:-1])  # the end link's length is anything
     if min(abs(arm.moments[1:])) <= 1e-9 * unit or min(abs(gaps), default=unit) <= 1e-9 * unit:
         return None  # gravity leaves a link alone, or acts on two alike: the criteria do not hold
-    failed = [str(failure) for failure in failures(layout, arm.n)]
-    if failed:
-        return "; ".join(failed)
     falling = (weight.real > 0).all() and (gaps.real < 0).all()
-    proof = prove(layout, arm.n) if arm.straight and falling else None
-    if proof is None:
-        return None
-    return f"proved by the signs of attachments on the link lines, in {cases(proof)} cases"
-
-
-def cases(proof: Proof) -> int:
-    """How many cases a proof distinguishes."""
-    return 1 if isinstance(proof, Leaf) else cases(proof.below) + cases(proof.above)
+    failed = tuple(failures(layout, arm.n))
+    proof = prove(layout, arm.n) if not failed and arm.straight and falling else None
+    return str(Excluded(layout, failed, proof)) if failed or proof else None
 
 
 def _read(texts: Sequence[str], arm: PlanarArm) -> Layout:
