@@ -74,7 +74,7 @@ def _up(one: Installation) -> float:
 
 def _rank(layout: Layout, n: int) -> Iterator[Failure]:
     if len(layout) < n - 1:
-        yield Failure("rank", f"with {len(layout)} springs: {n} links need {n - 1}")
+        yield Failure("rank", f"bound: {n} links need {n - 1} springs, it has {len(layout)}")
 
 
 def _G1(layout: Layout, n: int) -> Iterator[Failure]:

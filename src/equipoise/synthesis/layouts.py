@@ -48,6 +48,10 @@ class Excluded:
         count = cases(self.proof)
         return f"proved by the signs of attachments on the link lines, in {count} case{'s' if count > 1 else ''}"
 
+    def to_dict(self) -> dict[str, Any]:
+        """An element of ``equipoise layouts --excluded --json``."""
+        return {**_numbers(self.layout), "cost": None, "example": None, "excluded": str(self)}
+
 
 @dataclass(frozen=True)
 class Feasible:
@@ -247,8 +251,3 @@ def cases(proof: Proof) -> int:
 
 def _numbers(layout: Layout) -> dict[str, Any]:
     return {"pairs": [list(pair) for pair in layout], "springs": len(layout), "span": span(layout)}
-
-
-def excluded_to_dict(one: Excluded) -> dict[str, Any]:
-    """An excluded layout as an element of ``equipoise layouts --excluded --json``."""
-    return {**_numbers(one.layout), "cost": None, "example": None, "excluded": str(one)}
