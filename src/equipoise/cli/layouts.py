@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..errors import Fault, InputError, nearest
 from . import terminal
 from .app import Json, app
 
 if TYPE_CHECKING:
     from ..synthesis.layouts import Search
+
+FORMS = ("text", "latex")
 
 
 @app.command()
@@ -23,6 +26,9 @@ def layouts(
     weight: Annotated[float, typer.Option(help="of a joint that a spring spans, for weighted")] = 1.0,
     springs: Annotated[int | None, typer.Option(metavar="K", help="exactly so many springs")] = None,
     excluded: Annotated[bool, typer.Option("--excluded", help="also list what is excluded, and why")] = False,
+    equations: Annotated[
+        str, typer.Option(help="also print the design equations: text or latex", show_default=False)
+    ] = "",
     output: Annotated[Path | None, typer.Option("-o", "--output", help="folder for the examples as mechanisms")] = None,
     seed: Annotated[int, typer.Option(min=0, help="of the random starts for springs")] = 0,
     json: Json = False,
@@ -36,6 +42,8 @@ def layouts(
     from ..report.layouts import count_lines, layout_lines
     from ..synthesis.layouts import search
 
+    if equations not in ("", *FORMS):
+        raise InputError(Fault(("--equations",), f"unknown form {nearest(equations, FORMS)}", FORMS))
     with terminal.progress_bar("searching") as report:
         found = search(n, objective, springs, weight, seed, report)  # pyright: ignore[reportArgumentType]
     written = [] if output is None else _write(found, output)
@@ -51,7 +59,7 @@ def layouts(
 
         if excluded:
             terminal.show(Text(f"{name(one.layout)}: {one}", style="dim") for one in found.excluded)
-        terminal.show(layout_lines(found))
+        terminal.show(layout_lines(found, equations))
     for path in written:
         terminal.say(f"wrote {path}")
     raise typer.Exit(0 if found.feasible else 1)

@@ -51,6 +51,8 @@ def resized(one: Installation, a: float, b: float) -> Installation:
 def exchanged(arm: PlanarArm, one: Installation, two: Installation, end: Literal["lower", "upper"]) -> Pair:
     """Two springs ik as ik and (i+1)k, Eq. (28a), or with their upper end moved as ik and i(k-1), (28b).
 
+    Where both have the same ratio of a to b, both ends of the second one move at once, to (i+1)(k-1).
+
     Raises:
         UnsupportedError: they join different links, or neighbours.
         InfeasibleError: no two such springs have this effect.
@@ -59,7 +61,8 @@ def exchanged(arm: PlanarArm, one: Installation, two: Installation, end: Literal
         raise UnsupportedError("only two springs between the same two links, not neighbours, can be exchanged")
     row = one.i - 1 if end == "lower" else one.k - 1
     x, y = (sqrt(spring.stiffness) * vector(arm, spring)[row] for spring in (one, two))
-    return _mixed(arm, one, two, np.array([[x.conjugate(), y.conjugate()], [-y, x]]) / abs(complex(abs(x), abs(y))))
+    Q = np.array([[x.conjugate(), y.conjugate()], [-y, x]], np.complex128) / sqrt(abs(x) ** 2 + abs(y) ** 2)
+    return _mixed(arm, one, two, Q)
 
 
 def rotated(arm: PlanarArm, one: Installation, two: Installation, angle: float) -> Pair:

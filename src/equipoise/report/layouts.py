@@ -14,13 +14,19 @@ from ..synthesis.layouts import Feasible, Search, labels, name, span
 COSTS = {"springs": "springs", "span": "joints that springs span", "weighted": "weighted cost"}
 
 
-def layout_lines(search: Search) -> Iterator[RenderableType]:
-    """Every feasible layout of least cost with its springs, and the counts."""
+def layout_lines(search: Search, equations: str = "") -> Iterator[RenderableType]:
+    """Every feasible layout of least cost with its springs, and the counts.
+
+    Args:
+        equations: "text" or "latex" for the design equations too.
+    """
     for one in search.feasible:
         size = f"{len(one.layout)} springs that span {span(one.layout)} joints"
         proof = f"largest Fourier coefficient that varies {one.balance.certificate.max_coefficient:.2g} J"
         yield Text(f"{name(one.layout)}: {size}; exact on {one.balance.mechanism.name} ({proof})", style="bold green")
         yield spring_table(one)
+        if equations:
+            yield Text(one.equations.latex() if equations == "latex" else str(one.equations))
         for objection in one.objections:
             yield Text(f"  though it {objection}: a criterion of the paper that is not necessary", style="dim")
     for line in count_lines(search):
@@ -31,7 +37,7 @@ def spring_table(one: Feasible) -> Table:
     """Stiffness and attachments, as in Lee and Chen's Table 5 but for signs in the place of angles."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     for title in ("  spring", "k [N/m]", "a [mm]", "b [mm]"):
-        table.add_column(title, justify="right")
+        table.add_column(Text(title), justify="right")
     for label, spring in zip(labels(one.layout), one.found.springs, strict=True):
         a, b = (spring.a / upward(spring.i)).real, spring.b.real
         table.add_row(label, f"{spring.stiffness:.5g}", f"{1e3 * a:.2f}", f"{1e3 * b:.2f}")

@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 from ..balance import Balance, check
 from ..energy.planar import PlanarArm
+from ..energy.symbols import Angles, SymbolicBlocks, design_equations
 from ..errors import Fault, InputError
 from ..mechanism import Body, Joint, Mechanism
 from ..validate import whole_number
@@ -70,6 +71,13 @@ class Feasible:
     balance: Balance
     objections: tuple[Failure, ...]
 
+    @property
+    def equations(self) -> SymbolicBlocks:
+        """The design equations, with the angles that the springs have, Eqs. (39)-(43)."""
+        named = zip(self.found.springs, labels(self.layout), strict=True)
+        springs = ((one.i, one.k, label, Angles.of(one)) for one, label in named)
+        return design_equations(self.found.equations.arm.n, springs)
+
     def to_dict(self) -> dict[str, Any]:
         """An element of ``equipoise layouts --json``."""
         return {
@@ -78,6 +86,7 @@ class Feasible:
             "example": {
                 "mechanism": self.balance.mechanism.name,
                 "energy": self.found.energy,
+                "equations": str(self.equations).splitlines(),
                 "balance": self.balance.to_dict(),
             },
             "excluded": None,
