@@ -216,11 +216,14 @@ class Equations:
                 a[s], b[s] = half * a[s] / abs(a[s]) / turn, half
         return k, a, b
 
-    def solve(self, seed: int = 0, starts: int = STARTS, near: Array | None = None) -> Solution | None:
+    def solve(
+        self, seed: int = 0, starts: int = STARTS, near: Array | None = None, enough: int = ENOUGH
+    ) -> Solution | None:
         """Of the solutions found the one that stores least, None when none is found.
 
         Args:
             near: where to start from, before the random starts.
+            enough: solutions to choose from.
         """
         generator = np.random.default_rng(seed)
         found: list[Solution] = []
@@ -232,7 +235,7 @@ class Equations:
             springs = None if x is None else self.installed(x)
             if x is not None and springs is not None:
                 found.append(Solution(self, x, springs))
-            if len(found) == ENOUGH:
+            if len(found) == enough:
                 break
         return min(found, key=lambda one: one.energy, default=None)
 
@@ -254,16 +257,22 @@ class Solution:
 
 
 def solve(
-    arm: PlanarArm, layout: Layout, limit: float | None = None, fixed: Fixed | None = None, seed: int = 0
+    arm: PlanarArm,
+    layout: Layout,
+    limit: float | None = None,
+    fixed: Fixed | None = None,
+    seed: int = 0,
+    enough: int = ENOUGH,
 ) -> Solution | None:
     """Springs of a layout that balance the arm and store little, None when none were found.
 
     Args:
         limit: [m] of the attachments; without one they are kept as close as some multiple of the longest link.
+        enough: solutions to choose from.
     """
     size = Equations(arm, layout).size
     for most in (limit,) if limit is not None else (share * size for share in LIMITS):
-        found = Equations(arm, layout, most, fixed or {}).solve(seed)
+        found = Equations(arm, layout, most, fixed or {}).solve(seed, enough=enough)
         if found is not None:
             return found
     return None

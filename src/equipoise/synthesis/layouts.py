@@ -168,7 +168,7 @@ def search(
             if proof is not None:
                 proved.append(Excluded(layout, (), proof))
                 continue
-            found = solve(arm, layout, seed=seed)
+            found = solve(arm, layout, seed=seed, enough=1)
             balance = None if found is None else check(example.with_springs(arm.springs(found.springs)))
             if found is None or balance is None or not balance.exact:
                 left.append(layout)
