@@ -18,10 +18,10 @@ from ..energy.planar import Installation, PlanarArm
 from ..energy.potential import Potential
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism
-from ..synthesis.criteria import failures, sign_objections
+from ..synthesis.criteria import Objective, failures, sign_failures
 from ..synthesis.exclusion import Layout
 from ..synthesis.installing import STIFFNESS, A, B, Equations, Fixed, upward
-from ..synthesis.layouts import Objective, Search, labels, name, search, span
+from ..synthesis.layouts import Search, labels, name, search, span
 from .record import Plot, Reproduction, Row, spread
 
 PAPER = "lee2014"
@@ -276,7 +276,7 @@ _DISTAL = (
 
 def _failed(case: Case) -> list[str]:
     springs = completed(case)
-    return [str(one) for one in (*failures(case.layout, 4), *sign_objections(springs, 4))]
+    return [str(one) for one in (*failures(case.layout, 4), *sign_failures(planar(), springs))]
 
 
 def _spread(case: Case, s: int, which: int) -> float:

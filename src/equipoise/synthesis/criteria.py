@@ -14,8 +14,8 @@ G3    Without springs from the ground to v and v + 1, those that reach further a
 G5    For 2 <= u < v, springs that reach beyond both u and v add their stiffness to K_uv; one at u or v must take it
       away. A single spring that acts on K_uv takes nothing away either.
 
-The others hold for the signs and the objective that the paper assumes, and explain: G4 and the angles in G1 and S1-S3,
-J1-J4. J4 has an exception of its own, the last paragraph of section 7.2: springs 23 and 24 may be 24 and 34 instead.
+G4 and the angles in G1 depend on signs: `sign_failures`. S1-S3 and J1-J4 hold for the paper's objectives, and explain.
+J4 has an exception of its own, the last paragraph of section 7.2: springs 23 and 24 may be 24 and 34 instead.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ..energy.planar import Installation
+from ..energy.planar import Installation, PlanarArm
 from .exclusion import Layout
 
-Objective = Literal["springs", "span"]
-NECESSARY = ("rank", "G1", "G2", "G3", "G5")
+Objective = Literal["springs", "span", "weighted"]
+"""What is to be small: the number of springs, the joints that they span, or a weighted sum of both."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,6 @@ class Failure:
 
     criterion: str
     text: str
-
-    @property
-    def necessary(self) -> bool:
-        """Whether it excludes the layout."""
-        return self.criterion in NECESSARY
 
     def __str__(self) -> str:
         return f"fails {self.criterion} {self.text}"
@@ -54,22 +49,26 @@ def failures(layout: Layout, n: int) -> Iterator[Failure]:
 
 
 def objections(layout: Layout, n: int, objective: Objective) -> Iterator[Failure]:
-    """What else the paper asks for one objective: S1-S3 for the fewest springs, J1-J4 for the smallest span."""
-    yield from _fewest_springs(layout, n) if objective == "springs" else _smallest_span(layout, n)
+    """What else the paper asks for an objective: S1-S3 for the fewest springs, J1-J4 for the smallest span."""
+    if objective == "springs":
+        yield from _fewest_springs(layout, n)
+    elif objective == "span":
+        yield from _smallest_span(layout, n)
 
 
-def sign_objections(springs: Sequence[Installation], n: int) -> Iterator[Failure]:
-    """What the paper says of attachment angles, for springs on the link lines: G1, G4."""
-    if not any(_up(one) * one.b.real > 0 for one in springs if (one.i, one.k) == (1, n)):
-        yield Failure("G1", f"at links 1-{n}: no spring with angles (90, 0) or (270, 180) deg")
-    for one in springs:
-        if one.i == 1 and _up(one) < 0 < one.b.real and one.k > 2:
-            yield Failure("G4", f"at links 1-{one.k}: a spring with angles (270, 0) deg")
+def sign_failures(arm: PlanarArm, springs: Sequence[Installation]) -> Iterator[Failure]:
+    """The angles of G1 and G4 that springs on the link lines fail, where mass centres lie between the joints.
 
-
-def _up(one: Installation) -> float:
-    """The ground's attachment [m] above the first joint."""
-    return one.a.imag
+    Both follow from ``K_12 > K_13 > .. > K_1n > 0``: springs 1n alone act on K_1n, and the springs that tell K_1(v-1)
+    from K_1v are those between the ground and either. G4's ban on (270, 0) deg does not follow, and is left out.
+    """
+    lift = {v: [(one.stiffness * one.a.imag, one.b.real / arm.lengths[v - 1]) for one in springs
+                if (one.i, one.k) == (1, v)] for v in range(2, arm.n + 1)}  # fmt: skip
+    for v in range(3, arm.n + 2):
+        beyond = sum(up * (1 - share) for up, share in lift.get(v, []))
+        if beyond <= 0 and not any(up * share > 0 for up, share in lift[v - 1]):
+            criterion = "G1" if v > arm.n else "G4"
+            yield Failure(criterion, f"at links 1-{v - 1}: no spring with angles (90, 0) or (270, 180) deg")
 
 
 def _rank(layout: Layout, n: int) -> Iterator[Failure]:

@@ -6,9 +6,9 @@ can be checked (`exclusion`), or it is feasible: springs of that layout balance 
 `balance.check`. What none of the three decides is left open, and said so. The search ends with the first cost at which
 a layout is feasible.
 
-Exclusions hold for every arm whose mass centres and springs lie on the link lines. Where the joints that springs span
-count, a layout has at most one spring per pair (the paper's J1): two between links i and k may be exchanged for springs
-ik and (i+1)k, which span less (`equivalent`).
+Exclusions hold for every arm whose mass centres lie on its links, between the joints, with springs on the link lines.
+Where the joints that springs span count, a layout has at most one spring per pair (the paper's J1): two between links i
+and k may be exchanged for springs ik and (i+1)k, which span less, but for one special case (`energy.equivalent`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf, isfinite
-from typing import Any, Literal
+from typing import Any, get_args
 
 from ..balance import Balance, check
 from ..energy.planar import PlanarArm
@@ -25,13 +25,12 @@ from ..energy.symbols import Angles, SymbolicBlocks, design_equations
 from ..errors import Fault, InputError
 from ..mechanism import Body, Joint, Mechanism
 from ..validate import whole_number
-from .criteria import Failure, failures, objections
+from .criteria import Failure, Objective, failures, objections
 from .exclusion import Layout, Leaf, Proof, prove
 from .installing import Solution, solve
 from .problem import Progress
 
-Objective = Literal["springs", "span", "weighted"]
-OBJECTIVES: tuple[Objective, ...] = ("springs", "span", "weighted")
+OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 LENGTH, MASS = 0.2, 1.0  # [m, kg] of every link of the example arm, its mass centre halfway
 
 
@@ -173,8 +172,7 @@ def search(
             if found is None or balance is None or not balance.exact:
                 left.append(layout)
                 continue
-            against = () if objective == "weighted" else tuple(objections(layout, n, objective))
-            feasible.append(Feasible(layout, cost, found, balance, against))
+            feasible.append(Feasible(layout, cost, found, balance, tuple(objections(layout, n, objective))))
         if feasible:
             break
     return Search(n, objective, dict(pruned), tuple(proved), tuple(feasible), tuple(left))
