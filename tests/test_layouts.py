@@ -11,9 +11,9 @@ from test_exclusion import pairs
 
 import equipoise as eq
 from equipoise.errors import InputError
-from equipoise.synthesis.criteria import sign_failures
-from equipoise.synthesis.exclusion import verify
-from equipoise.synthesis.layouts import Search, example_arm, name, search, span
+from equipoise.synthesis.criteria import failures, sign_failures
+from equipoise.synthesis.exclusion import prove, verify
+from equipoise.synthesis.layouts import Search, _layouts, example_arm, name, search, span
 
 FEWEST = {  # THEORY section 5; n = 5 as in the paper's Table 2
     2: {"12"},
@@ -79,6 +79,21 @@ def test_smallest_span(n):
     subsets = (c for size in range(1, len(pairs(n)) + 1) for c in combinations(pairs(n), size))
     assert found.candidates == sum(span(c) <= least for c in subsets)
     judged(found)
+
+
+@pytest.mark.parametrize("n", [3, 4, 5, pytest.param(6, marks=pytest.mark.slow)])
+def test_several_springs_per_pair_span_more(n):
+    """J1: what `search` leaves out for the span. Two between neighbours act as one, so they are never the fewest."""
+    least = (n * n + n - 6) // 2
+    left = 0
+    for size in range(1, least + 1):
+        for joints in range(size, least + 1):
+            for layout in _layouts(n, size, joints, repeated=True):
+                again = {pair for pair in layout if layout.count(pair) > 1}
+                if again and all(k > i + 1 for i, k in again) and not any(failures(layout, n)):
+                    left += 1
+                    assert prove(layout, n) is not None, name(layout)
+    assert left == {3: 0, 4: 0, 5: 2, 6: 16}[n]
 
 
 @pytest.mark.parametrize("weight", [0.01, 1.0, 30.0])

@@ -4,15 +4,15 @@ A layout is a multiset of pairs of links, the ground being link 1. Some criteria
 angles and the mass centres, provided that gravity acts on every link and differently on neighbours; only these exclude
 a layout. With ``K_uv`` the blocks of `energy.blocks`, off the diagonal zero in the sum:
 
-rank  `n - 1` springs at least. Without its first row and column the springs' matrix is diagonal, and no entry there is
-      zero: the matrix is positive semidefinite and ``K_1v`` is not. So its rank is n - 1 at least, and each spring's is
-      one. (The least rank of a semidefinite matrix with the pattern of a star, or any tree, on n vertices.)
-G1    Only springs between 1 and n act on K_1n.
-G2    One spring between 1 and n leaves ``k B`` in K_2n, unless another between 1 or 2 and n cancels it.
-G3    Without springs from the ground to v and v + 1, those that reach further act on K_1v and K_1(v+1) alike. (The
-      paper's number of such springs, "greater than" ceil((n-1)/2), has to read "at least": Table 2, n = 3.)
-G5    For 2 <= u < v, springs that reach beyond both u and v add their stiffness to K_uv; one at u or v must take it
-      away. A single spring that acts on K_uv takes nothing away either.
+- rank: n - 1 springs at least. Without its first row and column the springs' matrix is diagonal, and no entry there is
+  zero: the matrix is positive semidefinite, and K_1v is not zero. So its rank is n - 1 at least, and each spring's is
+  one. (The least rank of a semidefinite matrix with the pattern of a star, or any tree, on n vertices.)
+- G1: Only springs between 1 and n act on K_1n.
+- G2: One spring between 1 and n leaves ``k B`` in K_2n, unless another between 1 or 2 and n cancels it.
+- G3: Without springs from the ground to v and v + 1, those that reach further act on K_1v and K_1(v+1) alike. (The
+  paper's number of such springs, "greater than" ceil((n-1)/2), has to read "at least": Table 2, n = 3.)
+- G5: For 2 <= u < v, springs that reach beyond both u and v add their stiffness to K_uv; one at u or v must take it
+  away. A single spring that acts on K_uv takes nothing away either.
 
 G4 and the angles in G1 depend on signs: `sign_failures`. S1-S3 and J1-J4 hold for the paper's objectives, and explain.
 J4 has an exception of its own, the last paragraph of section 7.2: springs 23 and 24 may be 24 and 34 instead.

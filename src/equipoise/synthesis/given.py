@@ -17,21 +17,21 @@ Given = Value | Mapping[str, Value] | None
 
 
 def numbers(option: str, given: Given, names: Sequence[str], positive: bool | None) -> dict[str, float]:
-    """The number for each link that has one: more than 0, at least 0, or (None) any."""
+    """The number for each link that has one, see `number`."""
     return {name: number(option, value, positive) for name, value in _each(option, given, names).items()}
 
 
 def number(option: str, value: Any, positive: bool | None) -> float:
-    """The value, when it is a finite number more than 0, at least 0, or (None) any.
+    """The value, when it is a finite number more than 0, at least 0, or with None of either sign but not 0.
 
     Raises:
         InputError: it is not.
     """
-    limit = {True: " of more than 0", False: " of at least 0", None: ""}[positive]
-    if not (isinstance(value, (int, float)) and isfinite(value) and (positive is None or value >= 0)) or (
-        positive and value == 0
-    ):
-        raise InputError(Fault((option,), f"must be a finite number{limit}, found {value}"))
+    limit = {True: "number of more than 0", False: "number of at least 0", None: "number other than 0"}[positive]
+    allowed = isinstance(value, (int, float)) and isfinite(value)
+    allowed = allowed and {True: value > 0, False: value >= 0, None: value != 0}[positive]
+    if not allowed:
+        raise InputError(Fault((option,), f"must be a finite {limit}, found {value}"))
     return float(value)
 
 

@@ -8,7 +8,8 @@ a layout is feasible.
 
 Exclusions hold for every arm whose mass centres lie on its links, between the joints, with springs on the link lines.
 Where the joints that springs span count, a layout has at most one spring per pair (the paper's J1): two between links i
-and k may be exchanged for springs ik and (i+1)k, which span less, but for one special case (`energy.equivalent`).
+and k may be exchanged for springs ik and (i+1)k, which span less, but for one special case (`energy.equivalent`), which
+the tests exclude up to six links.
 """
 
 from __future__ import annotations

@@ -89,9 +89,8 @@ def design(
 def reason(arm: PlanarArm, layout: Layout) -> str | None:
     """Why a layout cannot balance an arm, proved; None when it may."""
     weight = arm.moments[1:] / arm.lengths[1:]
-    unit = abs(weight).max()
     gaps = np.diff(weight[:-1])  # the end link's length is anything
-    if min(abs(arm.moments[1:])) <= 1e-9 * unit or min(abs(gaps), default=unit) <= 1e-9 * unit:
+    if abs(np.concatenate([weight, gaps])).min() <= 1e-9 * abs(weight).max():
         return None  # gravity leaves a link alone, or acts on two alike: the criteria do not hold
     falling = (weight.real > 0).all() and (gaps.real < 0).all()
     failed = tuple(failures(layout, arm.n))
@@ -118,19 +117,13 @@ def _pair(text: str, arm: PlanarArm) -> tuple[int, int]:
 
 
 def _fixed(names: list[str], stiffness: Given, a: Given, b: Given) -> Fixed:
-    found = {}
-    for which, option, given, positive in (
-        (STIFFNESS, "stiffness", stiffness, True),
-        (A, "a", a, None),
-        (B, "b", b, None),
-    ):
-        for label, value in numbers(option, given, names, positive).items():
-            if value == 0:
-                raise InputError(
-                    Fault((option, label), "must not be 0: the spring would act from the neighbouring link")
-                )
-            found[names.index(label), which] = value
-    return found  # fmt: skip
+    """The values given; an end on its joint, 0, would make the spring one of the neighbouring link."""
+    given = ((STIFFNESS, "stiffness", stiffness, True), (A, "a", a, None), (B, "b", b, None))
+    return {
+        (names.index(label), which): value
+        for which, option, values, positive in given
+        for label, value in numbers(option, values, names, positive).items()
+    }
 
 
 def _from_stock(free: Solution, stock: Sequence[float], seed: int, progress: Progress | None) -> Solution | None:
