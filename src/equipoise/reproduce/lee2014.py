@@ -240,7 +240,8 @@ def _table_5(case: Case) -> Iterator[Row]:
             free = (s, which) in case.free
             yield Row(PAPER, f"{letter}^{label}, {where}", text, _length(springs[s], which), "m",
                       _spread(case, s, which), note="free" if free else "")  # fmt: skip
-    yield Row(PAPER, f"criteria that the springs fail, {where}", "0", len(_failed(case)))
+    failed = [*failures(case.layout, 4), *sign_failures(planar(), springs)]
+    yield Row(PAPER, f"criteria that the springs fail, {where}", "0", len(failed))
     balance = check(printed(case))
     low, high = balance.total
     yield Row(
@@ -272,11 +273,6 @@ _DISTAL = (
     "section 2 measures a 'from the joint' of link i; the blocks (7) and Table 5 hold only if that is the joint at its "
     "far end, to link i + 1"
 )
-
-
-def _failed(case: Case) -> list[str]:
-    springs = completed(case)
-    return [str(one) for one in (*failures(case.layout, 4), *sign_failures(planar(), springs))]
 
 
 def _spread(case: Case, s: int, which: int) -> float:
