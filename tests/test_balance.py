@@ -13,8 +13,8 @@ from test_kinematics import coupled
 from zoo import PENDULUM_K, ZOO, hinge, irrational_pair, pendulum, to_ground, vertical_slide
 
 from equipoise import Balance, check
-from equipoise.errors import InputError, UnsupportedError
-from equipoise.mechanism import Body, Joint, Loop, Mechanism, Workspace
+from equipoise.errors import InputError
+from equipoise.mechanism import Body, Joint, Mechanism, Workspace
 from equipoise.spring import Spring
 
 
@@ -207,13 +207,6 @@ def test_springs_without_gravity_and_springs_on_a_massless_arm() -> None:
         opposite = replace(m.springs[0], name="opposite", p_b=(-0.15, 0.0, 0.0))
         assert check(m.with_springs((*m.springs, opposite))).exact
         json.dumps(b.to_dict(), allow_nan=False)
-
-
-def test_loops_are_refused() -> None:
-    m = pendulum()
-    loop = Loop("world", (0.0, 0.0, 0.0), "arm", (0.0, 0.0, 0.0))
-    with pytest.raises(UnsupportedError, match="loops"):
-        check(replace(m, loops=(loop,)))
 
 
 def test_contradictory_ranges_are_refused() -> None:

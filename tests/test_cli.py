@@ -93,17 +93,6 @@ def test_check_text_has_units_and_the_verdict(run, pendulum):
         assert text in out
 
 
-def test_loops_are_refused(run, tmp_path):
-    path = tmp_path / "loop.yaml"
-    loop = "loops:\n  - {body_a: world, p_a: [0.3, 0, 0], body_b: arm, p_b: [0.3, 0, 0]}\n"
-    path.write_text(PENDULUM.replace("STIFFNESS", "100").replace("FREE", "0") + loop)
-    for command in (["check"], ["design"], ["design", "-o", tmp_path / "out.yaml"]):
-        code, out, err = run(command[0], path, *command[1:])
-        assert (code, out) == (2, "")
-        assert "loops need the closed-loop solver" in err or "closed-loop solver does not exist yet" in err
-    assert not (tmp_path / "out.yaml").exists()
-
-
 def test_methods(run):
     code, out, _ = run("methods", ROBOTS / "ur5.urdf", "--json")
     assert code == 0

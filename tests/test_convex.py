@@ -10,7 +10,7 @@ from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.energy import Potential
-from equipoise.errors import InfeasibleError, InputError, UnsupportedError
+from equipoise.errors import InfeasibleError, InputError
 from equipoise.kinematics import Tree, sample
 from equipoise.synthesis import Problem, Region
 from equipoise.synthesis.bound import least_rms
@@ -203,9 +203,6 @@ def test_what_cannot_be_designed():
     weightless = replace(lee_chen(), gravity=(0.0, 0.0, 0.0))
     with pytest.raises(InputError, match="nothing to balance"):
         eq.design(weightless)
-    closed = replace(lee_chen(), loops=(eq.Loop("link4", (0.07, 0, 0), "world", (0.3, 0, 0)),))
-    with pytest.raises(UnsupportedError, match="loops"):
-        eq.design(closed)
     with pytest.raises(InputError, match="no method 'convx'; did you mean 'convex'"):
         eq.design(lee_chen(), "convx")
 

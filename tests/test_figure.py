@@ -10,7 +10,7 @@ from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.balance import check
-from equipoise.errors import InputError, UnsupportedError
+from equipoise.errors import InputError
 from equipoise.io import files
 from equipoise.kinematics import Tree
 from equipoise.report import loads, style
@@ -222,13 +222,6 @@ def test_of_many_coordinates_and_springs_the_first_are_shown(tmp_path):
 def test_odd_mechanisms_are_drawn(tmp_path, mechanism):
     save_figure(mechanism, tmp_path / "odd.svg")
     assert texts(tmp_path / "odd.svg")
-
-
-def test_loops_are_refused(tmp_path):
-    closed = replace(PENDULUM, loops=(eq.Loop("world", (0, 0, 0), "arm", (0, 0, 0)),))
-    with pytest.raises(UnsupportedError, match="loop"):
-        save_figure(closed, tmp_path / "loop.svg")
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

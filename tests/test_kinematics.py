@@ -10,10 +10,10 @@ from random_mechanisms import random_mechanism, random_poses
 from scipy.spatial.transform import Rotation
 from zoo import ZOO, geared_pair
 
-from equipoise.errors import InputError, UnsupportedError
+from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.sampling import bounds, inside
-from equipoise.mechanism import Body, Coupling, Joint, Loop, Mechanism
+from equipoise.mechanism import Body, Coupling, Joint, Mechanism
 
 SlowPoses = dict[str, tuple[np.ndarray, np.ndarray]]
 
@@ -118,12 +118,6 @@ def test_an_axis_of_any_length() -> None:
         joint = replace(m.joints[0], axis=(0.0, -length, 0.0))
         R = Tree.of(replace(m, joints=(joint,))).poses(q).R
         np.testing.assert_allclose(R, Tree.of(m).poses(q).R, atol=1e-15)
-
-
-def test_loops_are_refused() -> None:
-    m = replace(geared_pair(), loops=(Loop("left", (0, 0, 0), "right", (0, 0, 0)),))
-    with pytest.raises(UnsupportedError, match="loops"):
-        Tree.of(m)
 
 
 def test_samples_are_inside_and_reproducible() -> None:

@@ -1,14 +1,17 @@
-"""Write the example mechanisms that papers' methods and numbers give: arms of lin2010 and lee2014, balanced."""
+"""Write the examples that are designs: the bare mechanisms of the papers, balanced by their methods and numbers."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from equipoise import save
-from equipoise.reproduce import lee2014, lin2010
+from equipoise.reproduce import cho2012, lee2014, lin2010
+
+DESIGNS = {"lin2010_balanced": lin2010.balanced, "bevel_balanced": cho2012.balanced}
 
 if __name__ == "__main__":
     folder = Path(__file__).parent
-    save(lin2010.balanced().mechanism, folder / "lin2010_balanced.yaml")
+    for name, design in DESIGNS.items():
+        save(design().mechanism, folder / f"{name}.yaml")
     for case in lee2014.CASES:
         save(lee2014.balanced(case), folder / f"lee2014_table5{case.letter}.yaml")

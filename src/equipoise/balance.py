@@ -5,19 +5,20 @@ Everything is computed from the mechanism alone, so that no design method has to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 
 from .arrays import Array
+from .energy.closed import ClosedEnergy
 from .energy.fourier import EXACT, FourierEnergy
 from .energy.frames import MAX_TERMS, NoFourierForm
 from .energy.peak import climb
 from .energy.potential import Potential, State
 from .errors import InputError
-from .kinematics import Tree, sample
+from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
 from .validate import MAX_SAMPLES, whole_number
 
@@ -91,11 +92,27 @@ class Balance:
     worst_torque: Array
     use: tuple[SpringUse, ...]
 
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The independent coordinates, in the file's order."""
+        return Tree.of(self.mechanism).coordinates
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
+        return Tree.of(self.mechanism).units
+
+    @property
+    def mobility(self) -> Mobility | None:
+        """How many ways a mechanism with loops can move; None without loops."""
+        tree = Tree.of(self.mechanism)
+        return tree.mobility if isinstance(tree, Linkage) else None
+
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
         shares = [0.0]
-        units = np.array(self.mechanism.coordinate_units)
+        units = np.array(self.units)
         for unit in ("rad", "m"):
             residual, unbalanced = (
                 float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced)
@@ -112,10 +129,11 @@ class Balance:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``equipoise check --json`` (plain numbers, lists and text)."""
-        n = len(self.mechanism.coordinates)
+        coordinates = self.coordinates
         return {
             "mechanism": self.mechanism.name,
-            "coordinates": list(self.mechanism.coordinates),
+            "coordinates": list(coordinates),
+            "mobility": None if self.mobility is None else asdict(self.mobility),
             "exact": self.exact,
             "certificate": {
                 "kind": self.certificate.kind,
@@ -133,7 +151,7 @@ class Balance:
             "torque": {
                 "unbalanced": {"max": self.unbalanced.max.tolist(), "rms": self.unbalanced.rms.tolist()},
                 "residual": {"max": self.residual.max.tolist(), "rms": self.residual.rms.tolist()},
-                "bound": [None] * n if self.bound is None else self.bound.tolist(),
+                "bound": [None] * len(coordinates) if self.bound is None else self.bound.tolist(),
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
@@ -162,8 +180,8 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         max_terms: a longer Fourier form is not computed, and the verdict rests on samples.
 
     Raises:
-        UnsupportedError: the mechanism has loops.
-        InputError: the ranges of coupled joints contradict each other, or its numbers are so large that they overflow.
+        InputError: its loops cannot be closed, the ranges of its joints contradict each other, or its numbers are so
+            large that they overflow.
     """
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
@@ -184,8 +202,9 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
-    bound = None if series is None else series.torque_bound()
-    proof = () if series is None or bound is None else (series.amplitude, bound)
+    # with loops the bound is one of the open tree's coordinates, not of the actuators
+    bound = None if series is None or mechanism.loops else series.torque_bound()
+    proof = [found for found in (None if series is None else series.amplitude, bound) if found is not None]
     if not all(np.isfinite(found).all() for found in (best, unbalanced_rms, residual_rms, *proof)):
         raise InputError(f"mechanism '{mechanism.name}' has numbers so large that its energies overflow")
     ranges = [(-float(minus), float(plus)) for minus, plus in zip(low, top, strict=True)]
@@ -210,9 +229,15 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
 
 
 def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[FourierEnergy | None, str | None]:
-    """The Fourier form of a mechanism's energy, or None and the reason why there is none."""
+    """The Fourier form of a mechanism's energy, or None and the reason why there is none.
+
+    With loops it is the form up to what the loops make zero, and only one that proves balance says anything.
+    """
     try:
-        return FourierEnergy(mechanism, max_terms), None
+        if not mechanism.loops:
+            return FourierEnergy(mechanism, max_terms), None
+        closed = ClosedEnergy(mechanism, max_terms)
+        return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
     except NoFourierForm as why:
         return None, str(why)
 

@@ -99,6 +99,10 @@ class Workspace:
 class Mechanism:
     """Bodies, joints and what acts on them. Immutable; equal when all values are equal.
 
+    Attributes:
+        independent: of a mechanism with loops, the coordinates that determine the others; chosen by itself when empty.
+        assembly: coordinate values [rad or m] near a pose in which the loops close.
+
     Raises:
         InputError: with one `Fault` for every inconsistency (see `validate.faults`).
     """
@@ -113,6 +117,8 @@ class Mechanism:
     gravity: Vec3 = (0.0, 0.0, -9.81)
     workspace: Workspace = Workspace()
     provenance: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    independent: tuple[str, ...] = ()
+    assembly: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         from .validate import faults
@@ -128,7 +134,10 @@ class Mechanism:
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """The independent coordinates in the file's order; a spherical joint has three: name.x, name.y, name.z."""
+        """What couplings leave free, in the file's order; a spherical joint has three: name.x, name.y, name.z.
+
+        Loops make some of these depend on the others: `Tree.of(mechanism).coordinates` are the independent ones.
+        """
         dependent = {coupling.joint for coupling in self.couplings}
         names: list[str] = []
         for joint in self.joints:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,16 @@ def from_rpy(rpy: ArrayLike) -> Array:
     y = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
     z = np.array([[cos(yaw), -sin(yaw), 0], [sin(yaw), cos(yaw), 0], [0, 0, 1]])
     return z @ y @ x
+
+
+def to_rpy(R: ArrayLike) -> tuple[float, float, float]:
+    """Roll, pitch, yaw [rad] with ``from_rpy(to_rpy(R)) == R``; where pitch is +-90 deg the yaw is taken as 0."""
+    R = np.asarray(R, float)
+    level = hypot(R[0, 0], R[1, 0])
+    pitch = atan2(-R[2, 0], level)
+    if level > 1e-12:
+        return atan2(R[2, 1], R[2, 2]), pitch, atan2(R[1, 0], R[0, 0])
+    return atan2(-R[1, 2], R[1, 1]), pitch, 0.0
 
 
 def about(axis: ArrayLike, angle: ArrayLike) -> Array:

@@ -27,6 +27,7 @@ def faults(mechanism: Mechanism) -> list[Fault]:
         *_couplings(mechanism),
         *_springs(mechanism),
         *_loops(mechanism),
+        *_branch(mechanism),
     ]
 
 
@@ -227,6 +228,24 @@ def _loops(m: Mechanism) -> Iterator[Fault]:
                 yield Fault(("loops", i, name), f"missing: a hinge needs both axes, and '{other}' is given")
         if loop.body_a == loop.body_b:
             yield Fault(("loops", i, "body_b"), f"both points are on '{loop.body_a}'")
+
+
+def _branch(m: Mechanism) -> Iterator[Fault]:
+    """What says how loops are assembled and steered."""
+    named = {"independent": m.independent, "assembly": tuple(name for name, _ in m.assembly)}
+    for key, names in named.items():
+        if names and not m.loops:
+            yield Fault((key,), "only a mechanism with 'loops' has it")
+            continue
+        for i, name in enumerate(names):
+            path: Path = (key, name if key == "assembly" else i)
+            if name not in m.coordinates:
+                yield Fault(path, f"there is no coordinate {nearest(name, m.coordinates)}", _shorten(m.coordinates))
+            elif name in names[:i]:
+                yield Fault(path, f"coordinate '{name}' is named twice")
+    for name, value in m.assembly:
+        if not isfinite(value):
+            yield Fault(("assembly", name), "must be finite")
 
 
 def _list(names: Iterable[str]) -> str:

@@ -26,11 +26,12 @@ def check(
     Example: [bold]equipoise check arm.yaml --tolerance 1%[/bold]
     """
     from ..balance import check as judge
+    from ..kinematics import Tree
     from . import options
 
     share, torque = options.tolerance(tolerance)
     mechanism = terminal.load(file)
-    if torque is not None and "m" in mechanism.coordinate_units:
+    if torque is not None and "m" in Tree.of(mechanism).units:
         raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
     with terminal.progress_bar("judging") as report:
         report("judging the balance", 0.0)

@@ -39,8 +39,8 @@ class FourierEnergy:
             alone, makes the energy vary by, summed before anything cancels; 0 where that is nothing but rounding.
 
     Raises:
-        NoFourierForm: a spring has a free length, a coupling ratio is not a fraction, or there are too many terms.
-        UnsupportedError: the mechanism has loops.
+        NoFourierForm: it has loops, a spring has a free length, a coupling ratio is not a fraction, or there are too
+            many terms.
     """
 
     def __init__(self, mechanism: Mechanism, max_terms: int = MAX_TERMS) -> None:

@@ -14,6 +14,7 @@ from math import lcm
 import numpy as np
 
 from ..arrays import Array
+from ..kinematics.linkage import Linkage
 from ..kinematics.tree import Link, Tree
 from ..rotation import harmonics
 from .series import Series
@@ -28,9 +29,15 @@ class NoFourierForm(Exception):
 
 
 class Frames:
-    """Relative rotations and stretches of a tree as series. Integer frequencies: unit 1/`denominators` per radian."""
+    """Relative rotations and stretches of a tree as series. Integer frequencies: unit 1/`denominators` per radian.
+
+    Raises:
+        NoFourierForm: loops, ratios or the number of terms exclude it.
+    """
 
     def __init__(self, tree: Tree, max_terms: int = MAX_TERMS) -> None:
+        if isinstance(tree, Linkage):
+            raise NoFourierForm("it has loops: its energy is no finite sum over the independent coordinates")
         self.tree = tree
         self.max_terms = max_terms
         self.denominators = np.array([_denominator(column) for column in tree.C[tree.rotates].T], int)

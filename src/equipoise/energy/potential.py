@@ -65,7 +65,7 @@ class Potential:
     """Energy and torque of a mechanism at given configurations.
 
     Raises:
-        UnsupportedError: the mechanism has loops.
+        InputError: its loops cannot be closed.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:

@@ -38,6 +38,10 @@ def to_text(mechanism: Mechanism) -> str:
     for section in sections:
         if items := getattr(mechanism, section):
             document[section] = [_item(item) for item in items]
+    if mechanism.independent:
+        document["independent"] = list(mechanism.independent)
+    if mechanism.assembly:
+        document["assembly"] = {name: float(value) for name, value in mechanism.assembly}
     if mechanism.workspace != defaults["workspace"]:
         document["workspace"] = _item(mechanism.workspace)
     if mechanism.provenance:

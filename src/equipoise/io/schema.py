@@ -227,6 +227,8 @@ class MechanismFile(Item):
     dh: DhTable | None = None
     couplings: list[CouplingItem] = []
     loops: list[LoopItem] = []
+    independent: list[Text] = []
+    assembly: dict[str, Any] = {}  # angles or lengths: their joints tell
     springs: list[SpringItem] = []
     masses: list[MassItem] = []
     workspace: WorkspaceItem = WorkspaceItem()

@@ -60,6 +60,8 @@ class _Tree:
 
 def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
     tree, faults = _tree(file, located)
+    assembly, more = _assembly(file, tree)
+    faults += more
     try:
         mechanism = Mechanism(
             name=file.name,
@@ -72,6 +74,8 @@ def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
             gravity=file.gravity,
             workspace=Workspace(**file.workspace.values()),
             provenance=file.provenance,
+            independent=tuple(file.independent),
+            assembly=tuple(assembly.items()),
         )
     except InputError as error:
         raise located.error([*faults, *_translate(error.faults, tree)]) from None
@@ -114,6 +118,21 @@ def _tree(file: MechanismFile, located: Located) -> tuple[_Tree, list[Fault]]:
                 faults.append(Fault(("couplings", i, "offset"), str(error)))
         tree.couplings.append((Coupling(item.joint, tuple(item.terms.items()), offset), _Origin(("couplings", i))))
     return tree, faults
+
+
+def _assembly(file: MechanismFile, tree: _Tree) -> tuple[dict[str, float], list[Fault]]:
+    """Coordinate values near the assembly pose in SI units, and the faults."""
+    types = {joint.name: joint.type for joint, _ in tree.joints}
+    values: dict[str, float] = {}
+    faults: list[Fault] = []
+    for name, value in file.assembly.items():
+        try:
+            values[name] = to_si(value, DIMENSION_OF.get(types.get(name, ""), "angle"))
+        except ValueError as error:
+            values[name] = 0.0
+            if name in types or "." in name:  # if not, that is the fault
+                faults.append(Fault(("assembly", name), str(error)))
+    return values, faults
 
 
 def _model(name: str, located: Located) -> Mechanism:

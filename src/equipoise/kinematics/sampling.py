@@ -24,12 +24,13 @@ def slowest(tree: Tree) -> Array:
 def bounds(tree: Tree) -> tuple[Array, Array]:
     """Box (n,), (n,) that configurations are drawn from: the range; +-1 m for a slide without one.
 
-    An angle without a range gets +-pi, or what turns the slowest joint that it drives by +-pi.
+    An angle without a range gets +-pi, or what turns the slowest joint that it drives by +-pi. With loops it is
+    narrowed to what can be reached.
     """
     rows = tree.coordinate_rows
     free = np.where(tree.turns, np.pi / slowest(tree), SLIDE)
     lower, upper = tree.lower[rows], tree.upper[rows]
-    return np.where(np.isinf(lower), -free, lower), np.where(np.isinf(upper), free, upper)
+    return tree.narrow(np.where(np.isinf(lower), -free, lower), np.where(np.isinf(upper), free, upper))
 
 
 def whole_turns(tree: Tree, periods: ArrayLike = 1) -> bool:
@@ -49,7 +50,7 @@ def whole_turns(tree: Tree, periods: ArrayLike = 1) -> bool:
 
 def inside(tree: Tree, q: Array, slack: float = 1e-12) -> Booleans:
     """(N,) whether every joint, dependent ones included, is inside its range at `q` (N, n)."""
-    s = q @ tree.C.T + tree.s0
+    s = tree.values(q)
     return np.asarray(((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1))
 
 
@@ -57,7 +58,7 @@ def sample(tree: Tree, count: int, seed: int = 0) -> Array:
     """`count` configurations (count, n), uniform over the joint ranges; the same for the same seed.
 
     Raises:
-        InputError: the range of a dependent joint leaves (almost) no configuration.
+        InputError: the ranges of dependent joints and the loops leave (almost) no configuration.
     """
     rng = np.random.default_rng(seed)
     lower, upper = bounds(tree)
@@ -70,6 +71,8 @@ def sample(tree: Tree, count: int, seed: int = 0) -> Array:
         have += len(q)
         if have >= count:
             return np.concatenate(found)[:count]
+    if tree.mechanism.loops:
+        raise InputError(Fault(("loops",), "they and the joint ranges exclude nearly every configuration"))
     names = ", ".join(coupling.joint for coupling in tree.mechanism.couplings)
     raise InputError(
         Fault(("couplings",), f"the ranges of the coupled joints ({names}) exclude nearly every configuration")

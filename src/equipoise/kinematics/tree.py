@@ -1,4 +1,4 @@
-"""Forward kinematics of trees, batched over configurations.
+"""Forward kinematics of trees, batched over configurations. A mechanism with loops is a `Linkage` over its tree.
 
 A mechanism is compiled once to a `Tree`: bodies in an order in which each comes after its parent, and every joint
 as elementary motions (a spherical joint is three). The elementary joint values are ``s = C q + s0``: that one line
@@ -14,7 +14,6 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ..arrays import Array, Booleans, Integers
-from ..errors import UnsupportedError
 from ..mechanism import SINGLE, Joint, Mechanism
 from ..rotation import about, from_rpy
 
@@ -75,10 +74,12 @@ class Velocities:
 
 
 class Tree:
-    """A mechanism compiled for kinematics. Make it with `Tree.of`, which remembers the last few.
+    """A mechanism compiled for kinematics, its loops left open. Make it with `Tree.of`, which remembers the last few.
 
     Attributes:
         names: body names, the world first; `index` maps a name to its number.
+        motions: names of the elementary motions.
+        coordinates: names of the coordinates q.
         links: one per body but the world, parents before children.
         C: (motions, n) elementary joint values are ``s = C q + s0``.
         s0: (motions,) [rad or m].
@@ -88,14 +89,13 @@ class Tree:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        if mechanism.loops:
-            raise UnsupportedError(f"mechanism '{mechanism.name}': loops need the closed-loop solver")
         self.mechanism = mechanism
         self.names = mechanism.body_names
         self.index = {name: i for i, name in enumerate(self.names)}
         self.coordinates = mechanism.coordinates
         self.n = len(self.coordinates)
-        rows = {name: row for row, name in enumerate(_motion_names(mechanism))}
+        self.motions = tuple(_motion_names(mechanism))
+        rows = {name: row for row, name in enumerate(self.motions)}
         self.links = tuple(self._links(rows))
         self.C, self.s0 = _couplings(mechanism, rows)
         ranges = {j.name: j.range for j in mechanism.joints if j.range is not None}
@@ -107,11 +107,15 @@ class Tree:
     @staticmethod
     @lru_cache(maxsize=32)
     def of(mechanism: Mechanism) -> Tree:
-        """The compiled tree of `mechanism`.
+        """`mechanism` compiled: a `Linkage` where it has loops.
 
         Raises:
-            UnsupportedError: it has loops.
+            InputError: its loops cannot be closed.
         """
+        if mechanism.loops:
+            from .linkage import Linkage
+
+            return Linkage(mechanism)
         return Tree(mechanism)
 
     def _links(self, rows: dict[str, int]) -> Iterator[Link]:
@@ -136,7 +140,7 @@ class Tree:
     @cached_property
     def coordinate_rows(self) -> Integers:
         """(n,) the motion row that is coordinate j itself."""
-        rows = {name: row for row, name in enumerate(_motion_names(self.mechanism))}
+        rows = {name: row for row, name in enumerate(self.motions)}
         return np.array([rows[name] for name in self.coordinates], dtype=int)
 
     @property
@@ -144,10 +148,22 @@ class Tree:
         """(n,) whether each coordinate is an angle."""
         return self.rotates[self.coordinate_rows]
 
+    @property
+    def units(self) -> tuple[str, ...]:
+        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
+        return tuple("rad" if turns else "m" for turns in self.turns)
+
+    def values(self, q: Array) -> Array:
+        """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""
+        return q @ self.C.T + self.s0
+
+    def narrow(self, lower: Array, upper: Array) -> tuple[Array, Array]:
+        """The part of a box of configurations (n,), (n,) that it can reach: all of it, unless loops limit it."""
+        return lower, upper
+
     def poses(self, q: Array) -> Poses:
         """Body poses at configurations `q` (N, n) [rad or m]."""
-        N = len(q)
-        s = q @ self.C.T + self.s0
+        N, s = len(q), self.values(q)
         R = np.empty((N, len(self.names), 3, 3))
         p = np.empty((N, len(self.names), 3))
         R[:, 0], p[:, 0] = np.eye(3), 0.0
@@ -162,23 +178,31 @@ class Tree:
             p[:, link.body] = p[:, link.parent] + np.einsum("nij,nj->ni", R[:, link.parent], shift)
         return Poses(R, p)
 
+    def axes(self, q: Array, poses: Poses) -> Array:
+        """(N, motions, 3) unit axes of the elementary motions in the world, at `q` (N, n) with its `poses`."""
+        axes, s = np.empty((len(q), len(self.motions), 3)), None
+        for link in self.links:
+            if len(link.motions) == 1:  # an axis stays in place when its body turns about it
+                axes[:, link.motions[0].row] = poses.R[:, link.body] @ link.motions[0].axis
+            elif link.motions:
+                s = self.values(q) if s is None else s
+                R = poses.R[:, link.base] @ link.R0
+                for motion in link.motions:
+                    axes[:, motion.row] = R @ motion.axis
+                    R = R @ about(motion.axis, s[:, motion.row])
+        return axes
+
     def velocities(self, q: Array, poses: Poses) -> Velocities:
         """Analytic body velocities per unit rate of each coordinate, at `q` (N, n) with its `poses`."""
-        N, s = len(q), q @ self.C.T + self.s0
-        w = np.zeros((N, len(self.names), 3, self.n))
+        axes = self.axes(q, poses)
+        w = np.zeros((len(q), len(self.names), 3, self.n))
         v = np.zeros_like(w)
         for link in self.links:
             B, P = link.body, link.parent
             w[:, B] = w[:, link.base]
             v[:, B] = v[:, P] + np.cross(w[:, P], (poses.p[:, B] - poses.p[:, P])[:, :, None], axis=1)
-            R = poses.R[:, link.base] @ link.R0
             for motion in link.motions:
-                axis = (R @ motion.axis)[:, :, None]
-                if motion.rotates:
-                    w[:, B] += axis * self.C[motion.row]
-                    R = R @ about(motion.axis, s[:, motion.row])
-                else:
-                    v[:, B] += axis * self.C[motion.row]
+                (w if motion.rotates else v)[:, B] += axes[:, motion.row, :, None] * self.C[motion.row]
         return Velocities(w, v)
 
 

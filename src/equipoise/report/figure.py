@@ -46,8 +46,7 @@ def save_figure(
         title: in place of the mechanism's name.
 
     Raises:
-        InputError: another suffix, or the folder is missing or cannot be written to.
-        UnsupportedError: the mechanism has loops.
+        InputError: another suffix, the folder is missing or cannot be written to, or loops that cannot be closed.
     """
     judged = check(mechanism) if balance is None else balance
 
@@ -107,7 +106,7 @@ def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | N
 
 def _verdict(balance: Balance) -> tuple[str, str]:
     poses, limit = f"{balance.certificate.samples} random poses", loads.below(balance)
-    if not balance.mechanism.coordinates:
+    if not balance.coordinates:
         return "nothing moves", ""
     if not balance.mechanism.springs:
         return "gravity alone", f"over {poses}"
@@ -140,7 +139,7 @@ def _holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array
     """The largest holding torque in a pose, without and with springs."""
     if not len(before):
         return ""
-    units = np.array(mechanism.coordinate_units)
+    units = np.array(balance.units)
     unit = "rad" if "rad" in units else "m"
     what, symbol = loads.UNITS[unit]
     largest = [float(np.abs(torque[units == unit]).max()) for torque in (before, after)]
@@ -180,7 +179,7 @@ def _torque(figure: Any, balance: Balance) -> None:
     groups = loads.shown(balance)
     if not groups:
         return
-    names = balance.mechanism.coordinates
+    names = balance.coordinates
     rows = np.concatenate(list(groups.values()))
     longest = max(4, *(len(style.clean(names[row], loads.NAME)) for row in rows))
     left, right, bottom, top, gap = 0.625 + 0.0068 * longest, 0.97, 0.185, 0.79, 0.13

@@ -20,7 +20,7 @@ UNITS = {"rad": ("torque", "N m"), "m": ("force", "N")}
 
 def shown(balance: Balance) -> dict[str, Integers]:
     """Unit "rad" or "m" -> numbers of the coordinates to show, in their order, at most `MOST` in all."""
-    units = np.array(balance.mechanism.coordinate_units)
+    units = np.array(balance.units)
     share = np.zeros(len(units))
     for unit in UNITS:
         largest = balance.unbalanced.max[units == unit].max(initial=0)
@@ -55,7 +55,7 @@ def draw(axes: Any, balance: Balance, unit: str, rows: Integers) -> None:
     size = min(11.0, 72 * inches * height * (0.95 if springs else 2.0))
     for i, row in enumerate(rows):
         y = i - height * 0.55 if springs else float(i)
-        name = style.clean(balance.mechanism.coordinates[row], NAME)
+        name = style.clean(balance.coordinates[row], NAME)
         axes.text(-0.015, i, name, transform=axes.get_yaxis_transform(), ha="right", va="center", parse_math=False)
         colours = (style.BEFORE, style.BEFORE_PALE, style.FAINT)
         _bar(axes, y, before[1][i], before[0][i], start, height, colours, _label(before[0][i]), size)

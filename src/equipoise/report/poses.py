@@ -80,7 +80,7 @@ def choose(mechanism: Mechanism, skeleton: Skeleton) -> tuple[View, Array]:
 def _candidates(tree: Tree) -> Array:
     q = sample(tree, CANDIDATES)
     neutral = np.clip(0.0, *bounds(tree))
-    if tree.n > FEW and inside(tree, neutral[None]).all():
+    if tree.n > FEW and not tree.mechanism.loops and inside(tree, neutral[None]).all():
         return neutral + 0.5 * (q - neutral)  # ranges and couplings are linear, so that it stays inside
     return q
 

@@ -59,7 +59,7 @@ class Skeleton:
         """The skeleton of `mechanism`.
 
         Raises:
-            UnsupportedError: it has loops.
+            InputError: its loops cannot be closed.
         """
         tree = Tree.of(mechanism)
         fixed = {0}

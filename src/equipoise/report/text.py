@@ -26,7 +26,12 @@ def console(stderr: bool = False) -> Console:
 def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableType]:
     """The verdict, the torques per coordinate, the energies, the worst pose and the springs."""
     m = balance.mechanism
-    yield Text(f"{m.name}: {_count(m.coordinates, 'coordinate')}, {_count(m.springs, 'spring')}", style="bold")
+    yield Text(f"{m.name}: {_count(balance.coordinates, 'coordinate')}, {_count(m.springs, 'spring')}", style="bold")
+    if (mobility := balance.mobility) is not None:
+        yield Text(
+            f"mobility {mobility.numerical} by the rank of the loop equations, {mobility.gruebler} by counting them: "
+            f"{_count(range(mobility.redundant), 'equation')} follow from the others"
+        )
     yield verdict(balance)
     if tolerance:
         yield Text(tolerance)
@@ -36,10 +41,10 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
         f"energy: gravity {_range(balance.gravity)}, springs {_range(balance.springs)}, "
         f"total {_range((low, high))}, mean {balance.constant:.6g} J"
     )
-    if not balance.exact and len(m.coordinates):
+    if not balance.exact and len(balance.coordinates):
         pose = ", ".join(
             f"{name} {_pose(value, unit)}"
-            for name, value, unit in zip(m.coordinates, balance.worst_configuration, m.coordinate_units, strict=True)
+            for name, value, unit in zip(balance.coordinates, balance.worst_configuration, balance.units, strict=True)
         )
         yield Text(f"worst pose: {pose}")
     yield from spring_lines(balance)
@@ -55,7 +60,7 @@ def verdict(balance: Balance) -> Text:
         basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({largest})"
     else:
         basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
-    if not len(balance.mechanism.coordinates):
+    if not len(balance.coordinates):
         return Text("nothing moves: no coordinate to balance", style="yellow")
     if np.isinf(balance.relative):
         return Text(f"NOT BALANCED: the springs load joints that gravity does not; {basis}", style="bold yellow")
@@ -69,9 +74,8 @@ def torque_table(balance: Balance) -> Table:
     table.add_column("joint", no_wrap=True)
     for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
-    m = balance.mechanism
     floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
-    for j, (name, unit) in enumerate(zip(m.coordinates, m.coordinate_units, strict=True)):
+    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
         loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
         bound = "-" if balance.bound is None else _torque(balance.bound[j], floor)
         cells = [_torque(load[j], floor) for load in loads]

@@ -7,7 +7,13 @@ from importlib import import_module
 from ..errors import Fault, InputError, nearest
 from .record import Map, Plot, Reproduction, Row
 
-PAPERS: tuple[str, ...] = ("lin2010", "lee2014")
+PAPERS: tuple[str, ...] = (
+    "lin2010",
+    "cho2012",
+    "simionescu2015",
+    "lenzo2017",
+    "lee2014",
+)
 """Keys of the papers; each names its file."""
 
 __all__ = ["PAPERS", "Map", "Plot", "Reproduction", "Row", "reproduce"]

@@ -62,7 +62,7 @@ def design(
 
     Raises:
         InfeasibleError: `exact`, and no springs on the pairs do it, or none were found.
-        InputError: a bad option.  UnsupportedError: the mechanism has loops.
+        InputError: a bad option, or loops that cannot be closed.
     """
     if springs is not None:
         whole_number("springs", springs, 1)
@@ -114,7 +114,7 @@ def design(
 
 def applies(mechanism: Mechanism) -> list[str]:
     """Why the method does not apply; empty when it does."""
-    return ["it has loops, and the closed-loop solver does not exist yet"] if mechanism.loops else []
+    return []
 
 
 def _worth_solving(gram: Gram) -> Gram:
@@ -198,7 +198,7 @@ def _options(problem: Problem, span: int | None, springs: int | None, unlimited:
 
 METHOD = Method(
     "convex",
-    "zero-free-length springs between any bodies of a tree: exact where feasible, beside a global bound",
+    "zero-free-length springs between any bodies: exact where feasible, beside a global bound",
     "THEORY section 4: semidefinite program over moment matrices, then local polish",
     applies,
     design,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, sqrt
 from typing import Any
 
 import numpy as np
@@ -43,6 +43,44 @@ def vectors(option: str, given: Given, names: Sequence[str]) -> dict[str, Array]
             raise InputError(Fault((option, name), f"must be three lengths x,y,z [m] in its frame, found {value}"))
         found[name] = np.array(value, float)
     return found
+
+
+def spring_sizes(
+    strength: Mapping[str, float], default: Mapping[str, float], stiffness: Given, **lengths: Given
+) -> dict[str, tuple[float, float, float]]:
+    """Stiffness and the two lengths of each link's spring, whose product is its strength.
+
+    Args:
+        strength: of each link [N m].
+        default: what a length is where nothing asks for another [m].
+        stiffness, lengths: at most two of the three, the third follows; all three where they fit.
+
+    Raises:
+        InputError: all three are given and do not fit; the message says which stiffness does.
+    """
+    (first, second) = lengths
+    given = {
+        name: numbers(name, value, list(strength), positive=True)
+        for name, value in (("stiffness", stiffness), *lengths.items())
+    }
+    sizes = {}
+    for link, moment in strength.items():
+        K, a, b = (found.get(link) for found in given.values())
+        if K is not None and a is not None and b is not None:
+            if abs(K * a * b - moment) > 1e-9 * moment:
+                problem = f"with {first} and {second} it is given already: {moment / (a * b):.6g} N/m"
+                problem += f", as the product of the three must be {moment:.6g} N m, found {K * a * b:.6g} N m"
+                raise InputError(Fault(("stiffness", link), problem))
+        elif K is None:
+            a, b = default[link] if a is None else a, default[link] if b is None else b
+            K = moment / (a * b)
+        elif a is None:
+            b = sqrt(moment / K) if b is None else b
+            a = moment / (K * b)
+        else:
+            b = moment / (K * a)
+        sizes[link] = K, a, b
+    return sizes
 
 
 def _each(option: str, given: Given, names: Sequence[str]) -> dict[str, Value]:

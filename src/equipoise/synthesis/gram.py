@@ -96,8 +96,7 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
     Exact averages need revolute and spherical joints, unlimited or limited to whole turns; else samples are taken.
 
     Raises:
-        UnsupportedError: the mechanism has loops.
-        InputError: its numbers or regions are so large that the torques overflow.
+        InputError: its loops cannot be closed, its numbers or regions are so large that the torques overflow.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         rows = None if problem.samples is not None else _averages(problem)

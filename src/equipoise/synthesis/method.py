@@ -9,7 +9,9 @@ from typing import Literal
 from ..mechanism import Mechanism
 from .design import Design
 
-Kind = Literal["length", "angle", "mass", "stiffness", "number", "share", "whole", "text", "names", "pairs", "flag"]
+Kind = Literal[
+    "length", "angle", "mass", "stiffness", "torque", "number", "share", "whole", "text", "names", "pairs", "flag"
+]
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,26 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import convex, planar, pseudobase
+from . import (
+    bevel,
+    convex,
+    delta,
+    no_auxiliary,
+    planar,
+    pseudobase,
+)
 from .design import Design
 from .method import Method
 
-METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in (convex, pseudobase, planar)}
+_MODULES = (
+    convex,
+    pseudobase,
+    planar,
+    no_auxiliary,
+    bevel,
+    delta,
+)
+METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in _MODULES}
 
 
 def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
@@ -30,7 +45,8 @@ def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Desi
     run = METHODS[method].run
     if "progress" not in signature(run).parameters:  # quick work reports none
         options.pop("progress", None)
-    valid = tuple(name for name in signature(run).parameters if name != "mechanism")
+    own = [name for name, p in signature(run).parameters.items() if p.kind is not p.VAR_KEYWORD and name != "mechanism"]
+    valid = tuple(dict.fromkeys([*own, *METHODS[method].parameters]))
     for name in options:
         if name not in valid:
             raise InputError(Fault((name,), f"method '{method}' has no such option", valid))

@@ -6,6 +6,7 @@ axes of a compound joint in many URDF files: nothing can be mounted on those.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,12 +19,12 @@ from ..mechanism import Mechanism
 
 @dataclass(frozen=True)
 class Mounts:
-    """The mountable bodies of a tree.
+    """The mountable bodies of a mechanism.
 
     Attributes:
         bodies: names, ground first, one for each rigid group: the body that carries the next moving joint, else the
             first with mass.
-        distance: (bodies, bodies) moving joints between them, compound joints counted once.
+        distance: (bodies, bodies) moving joints between them on the shortest way, compound joints counted once.
         size: of each [m]: farthest mass centre or joint from its origin.
         reach: [m] longest chain of joint offsets.
     """
@@ -57,7 +58,7 @@ class Mounts:
         """The mounts of a mechanism.
 
         Raises:
-            UnsupportedError: it has loops.
+            InputError: its loops cannot be closed.
         """
         tree = Tree.of(mechanism)
         place = places(tree, ("fixed",))
@@ -82,7 +83,8 @@ class Mounts:
         solid = [root for root in members if root == 0 or any(b in mass for b in members[root]) or _long(ends[root])]
         chosen = {r: carrier.get(r, next((b for b in members[r] if b in mass), r)) for r in solid}
         size = [max((float(np.linalg.norm(end - place[chosen[r]].p)) for end in ends[r]), default=0.0) for r in solid]
-        distance = tuple(tuple(_apart(a, b, above, set(solid)) for b in solid) for a in solid)
+        loops = [(place[tree.index[o.body_a]].root, place[tree.index[o.body_b]].root) for o in mechanism.loops]
+        distance = _apart([*above.items(), *loops], solid)
         reach = max([*path.values(), *(path[chosen[r]] + s for r, s in zip(solid, size, strict=True))])
         return Mounts(tuple(tree.names[chosen[r]] for r in solid), distance, tuple(size), reach or 1.0)
 
@@ -103,17 +105,14 @@ def _long(ends: list[np.ndarray]) -> bool:
     return any(np.linalg.norm(end) > 1e-9 for end in ends)
 
 
-def _apart(a: int, b: int, above: dict[int, int], solid: set[int]) -> int:
-    """Mountable bodies passed on the way from group a to group b."""
-
-    def path(x: int) -> list[int]:
-        steps = [x]
-        while x in above:
-            x = above[x]
-            steps.append(x)
-        return steps
-
-    up, down = path(a), path(b)
-    top = next(x for x in up if x in down)
-    way = [*up[: up.index(top) + 1], *reversed(down[: down.index(top)])]
-    return sum(x in solid for x in way) - 1
+def _apart(edges: Iterable[tuple[int, int]], solid: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+    """Between every two solid groups: how many solid ones the shortest way over the edges enters."""
+    number = {group: i for i, group in enumerate(dict.fromkeys((*solid, *(end for edge in edges for end in edge))))}
+    distance = np.where(np.eye(len(number), dtype=bool), 0, len(number))
+    for a, b in edges:
+        for start, end in ((a, b), (b, a)):
+            if start != end:
+                distance[number[start], number[end]] = number[end] < len(solid)
+    for k in range(len(number)):
+        distance = np.minimum(distance, distance[:, k, None] + distance[k])
+    return tuple(tuple(int(d) for d in row[: len(solid)]) for row in distance[: len(solid)])

@@ -112,7 +112,7 @@ class Problem:
 
         Raises:
             InputError: an unknown body or joint, a pair of one body, no pair at all, an option out of range.
-            UnsupportedError: the mechanism has loops.
+            InputError: also loops that cannot be closed.
         """
         mounts = Mounts.of(mechanism)
         whole_number("span", span, 1)
@@ -162,7 +162,7 @@ class Problem:
     def weights(self) -> Array:
         """(n,) what each coordinate's torque counts: 1 for an angle; a force counts at the mechanism's reach [m]."""
         every = np.where(Tree.of(self.mechanism).turns, 1.0, Mounts.of(self.mechanism).reach)
-        counted = [self.joints is None or name in self.joints for name in self.mechanism.coordinates]
+        counted = [self.joints is None or name in self.joints for name in Tree.of(self.mechanism).coordinates]
         return np.where(counted, every, 0.0)
 
     def lift(self, pair: Pair) -> Array:
@@ -176,14 +176,15 @@ class Problem:
 
 def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
     found: list[str] = []
+    coordinates = Tree.of(mechanism).coordinates
     for name in joints:
-        own = [c for c in mechanism.coordinates if name in (c, c.rpartition(".")[0])]
+        own = [c for c in coordinates if name in (c, c.rpartition(".")[0])]
         if not own:
-            problem = f"no independent joint {nearest(name, mechanism.coordinates)}"
-            raise InputError(Fault(("joints",), problem, mechanism.coordinates))
+            problem = f"no independent joint {nearest(name, coordinates)}"
+            raise InputError(Fault(("joints",), problem, coordinates))
         found += own
     if not found:
-        raise InputError(Fault(("joints",), "no joint is named", mechanism.coordinates))
+        raise InputError(Fault(("joints",), "no joint is named", coordinates))
     return tuple(dict.fromkeys(found))
 
 

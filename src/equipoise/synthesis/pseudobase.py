@@ -9,8 +9,7 @@ the first links, which only turn about the vertical, carry the foot of the chain
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import sqrt
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from ..arrays import Array
 from ..errors import Fault, InputError, nearest
 from ..mechanism import Mechanism
 from .design import Design
-from .given import Given, number, numbers, vectors
+from .given import Given, number, numbers, spring_sizes, vectors
 from .method import Method, Parameter
 from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from .mounts import Mounts
@@ -93,9 +92,9 @@ def design(
     whole = moments(links, {i: module.lumps for i, module in modules.items()})  # (24)-(25)
     sprung = [i for i in chain if links[i].works(whole[i].vector, _unit(whole))]
     g = float(np.linalg.norm(bare.gravity))
-    sizes = _sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},
-                   {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
-                   stiffness, l_CA, l_CB)  # fmt: skip
+    sizes = spring_sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},  # (16)
+                         {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
+                         stiffness, l_CA=l_CA, l_CB=l_CB)  # fmt: skip
     balanced = Builder(bare, links, height).build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
@@ -163,33 +162,6 @@ def _beside(link: Segment, moment: Moment, unit: float, distance: float) -> Arra
     if np.linalg.norm(direction) <= NOTHING * unit:
         direction = sideways[:, np.argmin(np.abs(link.axis))]
     return distance * direction / np.linalg.norm(direction)
-
-
-def _sizes(
-    strength: Mapping[str, float], default: Mapping[str, float], stiffness: Given, l_CA: Given, l_CB: Given
-) -> dict[str, tuple[float, float, float]]:
-    """Stiffness, l_CA and l_CB of each link's spring: K l_CA l_CB = mu g |sigma|, Eq. (16), called strength [N m]."""
-    given = {
-        name: numbers(name, value, list(strength), positive=True)
-        for name, value in (("stiffness", stiffness), ("l_CA", l_CA), ("l_CB", l_CB))
-    }
-    sizes = {}
-    for link, moment in strength.items():
-        K, a, b = (given[name].get(link) for name in ("stiffness", "l_CA", "l_CB"))
-        if K is not None and a is not None and b is not None:
-            raise InputError(
-                Fault(("stiffness", link), f"with l_CA and l_CB it is given already: {moment / (a * b):.6g} N/m")
-            )
-        if K is None:
-            a, b = default[link] if a is None else a, default[link] if b is None else b
-            K = moment / (a * b)
-        elif a is None:
-            b = sqrt(moment / K) if b is None else b
-            a = moment / (K * b)
-        else:
-            b = moment / (K * a)
-        sizes[link] = K, a, b
-    return sizes
 
 
 def _planar(links: Sequence[Segment], chain: Sequence[int], asked: Sequence[str] | None) -> list[str]:

@@ -1,0 +1,221 @@
+"""One way of assembling a mechanism's loops: all the closed poses that paths from its assembly pose lead to.
+
+Waypoints are closed poses all over the ranges, found from each other; every other pose is reached from the nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ..arrays import Array, Booleans, Integers
+from ..mechanism import Body, Mechanism
+from . import assembly
+from .closure import Closure
+from .continuation import chunk, follow, tangent
+from .sampling import bounds, inside
+from .tree import Tree
+
+SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
+WAYPOINTS = 512  # goals of a round
+ROUNDS = 4  # each in the box of what the last has reached
+MARGIN = 0.25  # of that box, on every side
+ENOUGH = 0.5  # of the goals: no more rounds
+ATTEMPTS = 3  # nearest waypoints that a pose is tried from
+FLOOD = 8  # nearest reached waypoints that a goal is tried from
+REMEMBERED = 131_072  # poses
+
+
+class Status(IntEnum):
+    """What became of a pose: its loops close; no path from the assembly pose leads there; it is singular."""
+
+    CLOSED = 0
+    UNREACHABLE = 1
+    SINGULAR = 2
+
+
+@dataclass(frozen=True)
+class Waypoints:
+    """Closed poses `q` (K, n) with the tangents `T` (K, d, m) and Jacobians `J` (K, count, n) there."""
+
+    q: Array
+    T: Array
+    J: Array
+
+
+class Branch:
+    """The closed poses of a mechanism. Make it with `Branch.of`: springs, masses and gravity make no difference.
+
+    Attributes:
+        open: the spanning tree, loops ignored.
+        assembled: (open.n,) the closed pose that all others are reached from.
+        mobility: how many ways the mechanism can move.
+        split: which coordinates of the spanning tree are independent.
+
+    Raises:
+        InputError: it cannot be assembled, its assembly pose is singular, or its `independent` coordinates are not.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.open = Tree(mechanism)
+        self.closure = Closure(self.open)
+        self.assembled = assembly.assemble(self.closure)
+        self.mobility = assembly.mobility(self.closure, self.assembled)
+        self.split = assembly.choose(self.closure, self.assembled, self.mobility.numerical)
+        self._remembered: dict[bytes, tuple[Array, Status]] = {}
+
+    @staticmethod
+    def of(mechanism: Mechanism) -> Branch:
+        """The branch of `mechanism`; the last few are remembered."""
+        bodies = tuple(Body(body.name) for body in mechanism.bodies)
+        return _branch(
+            Mechanism(
+                "",
+                bodies,
+                mechanism.joints,
+                mechanism.couplings,
+                mechanism.loops,
+                independent=mechanism.independent,
+                assembly=mechanism.assembly,
+            )
+        )
+
+    def solve(self, u: Array) -> tuple[Array, Integers]:
+        """All coordinates (N, open.n) at independent ones `u` (N, m), NaN where not closed, and (N,) the `Status`."""
+        u = np.ascontiguousarray(u, float) + 0.0  # -0 is 0
+        keys = [row.tobytes() for row in u]
+        new = list({key: i for i, key in enumerate(keys) if key not in self._remembered}.values())
+        known = self._remembered
+        if len(known) + len(new) > REMEMBERED:
+            self._remembered = {}
+        if new:
+            found = dict(zip((keys[i] for i in new), zip(*self._close(u[new]), strict=True), strict=True))
+            self._remembered.update(found)
+            known = known | found
+        pairs = [known[key] for key in keys]
+        full = np.array([q for q, _ in pairs], float).reshape(len(u), self.open.n)
+        return full, np.array([status for _, status in pairs], int)
+
+    def _close(self, u: Array) -> tuple[Array, Integers]:
+        """`solve` for new poses: from the nearest waypoint, then from the next ones."""
+        way = self._waypoints
+        full, status = np.full((len(u), self.open.n), np.nan), np.full(len(u), int(Status.UNREACHABLE))
+        near = self._nearest(u, way.q)
+        todo = np.flatnonzero(np.isfinite(u).all(axis=1))
+        for start in near.T:
+            q, reached = self._follow(way, start[todo], u[todo])
+            full[todo[reached]] = q[reached]
+            status[todo[reached]] = Status.CLOSED
+            todo = todo[~reached]
+        closed = np.flatnonzero(status == Status.CLOSED)
+        bad = closed[~self._regular(full[closed])]
+        full[bad], status[bad] = np.nan, Status.SINGULAR
+        return full, status
+
+    def _follow(self, way: Waypoints, start: Integers, goal: Array) -> tuple[Array, Booleans]:
+        def part(i: slice) -> tuple[Array, Booleans]:
+            k = start[i]
+            return follow(self.closure, self.split, way.q[k], way.T[k], way.J[k], goal[i])
+
+        return self._by_parts(part, len(goal), (np.zeros((0, self.open.n)), np.zeros(0, bool)))
+
+    def _regular(self, q: Array) -> Booleans:
+        """(N,) whether closed poses are no singular ones."""
+
+        def part(i: slice) -> tuple[Booleans]:
+            return (tangent(self.closure.at(q[i])[1], self.split)[1] < SINGULAR,)
+
+        return self._by_parts(part, len(q), (np.zeros(0, bool),))[0]
+
+    def _by_parts(self, work: Callable[[slice], tuple], count: int, nothing: tuple) -> tuple:
+        """What `work` returns for `count` poses, a chunk at a time."""
+        size = chunk(self.closure)
+        parts = [work(slice(i, i + size)) for i in range(0, count, size)]
+        return tuple(np.concatenate(found) for found in zip(nothing, *parts, strict=True))
+
+    def _nearest(self, u: Array, q: Array) -> Integers:
+        """(N, k) numbers of the nearest poses of `q` (K, open.n), nearest first."""
+        k = min(ATTEMPTS, len(q))
+
+        def part(i: slice) -> tuple[Integers]:
+            apart = self._apart(u[i], q)
+            near = np.argpartition(apart, k - 1, axis=1)[:, :k]
+            return (np.take_along_axis(near, np.take_along_axis(apart, near, axis=1).argsort(axis=1), axis=1),)
+
+        return self._by_parts(part, len(u), (np.zeros((0, k), int),))[0]
+
+    def _apart(self, u: Array, q: Array) -> Array:
+        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths."""
+        a, b = u / self._width, q[:, self.split.independent] / self._width
+        return np.sqrt(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T, 0.0))
+
+    @cached_property
+    def _ranges(self) -> tuple[Array, Array]:
+        lower, upper = bounds(self.open)
+        return lower[self.split.independent], upper[self.split.independent]
+
+    @cached_property
+    def _width(self) -> Array:
+        lower, upper = self._ranges
+        return np.where(upper > lower, upper - lower, 1.0)
+
+    @cached_property
+    def box(self) -> tuple[Array, Array]:
+        """Lower and upper ends (m,) of a box round the poses that are reached inside the ranges, with a margin."""
+        return self._around(self._waypoints.q)
+
+    def _around(self, q: Array) -> tuple[Array, Array]:
+        q = q[inside(self.open, q, 1e-9)]
+        lower, upper = self._ranges
+        if len(q) == 0:
+            return lower, upper
+        low, high = (f(q[:, self.split.independent], axis=0) for f in (np.min, np.max))
+        margin = MARGIN * np.maximum(high - low, self._width / WAYPOINTS)
+        return np.maximum(lower, low - margin), np.minimum(upper, high + margin)
+
+    @cached_property
+    def _waypoints(self) -> Waypoints:
+        rng = np.random.default_rng(0)
+        reached = self._with(None, self.assembled[None])
+        box = self._ranges
+        for _ in range(ROUNDS if len(self.split.independent) else 0):
+            before = len(reached.q)
+            reached = self._flooded(reached, rng.uniform(*box, (WAYPOINTS, len(box[0]))))
+            box = self._around(reached.q)
+            if len(reached.q) - before > ENOUGH * WAYPOINTS:
+                break
+        return reached
+
+    def _flooded(self, reached: Waypoints, goals: Array) -> Waypoints:
+        """With what can be reached of the goals, each from the nearest poses that are reached already."""
+        tried = np.zeros((len(goals), 0), bool)
+        todo = np.arange(len(goals))
+        while len(todo):
+            tried = np.hstack([tried, np.zeros((len(goals), len(reached.q) - tried.shape[1]), bool)])
+            apart = np.where(tried[todo], np.inf, self._apart(goals[todo], reached.q))
+            worth = np.isfinite(apart.min(axis=1)) & (tried[todo].sum(axis=1) < FLOOD)
+            todo, start = todo[worth], apart[worth].argmin(axis=1)
+            tried[todo, start] = True
+            q, done = self._follow(reached, start, goals[todo])
+            reached = self._with(reached, q[done])
+            todo = todo[~done]
+        return reached
+
+    def _with(self, way: Waypoints | None, q: Array) -> Waypoints:
+        """With the closed poses `q` added, but for singular ones."""
+        J = self.closure.at(q)[1]
+        T, condition = tangent(J, self.split)
+        good = condition < SINGULAR
+        new = Waypoints(q[good], T[good], J[good])
+        if way is None:
+            return new
+        return Waypoints(*(np.concatenate([a, b]) for a, b in ((way.q, new.q), (way.T, new.T), (way.J, new.J))))
+
+
+@lru_cache(maxsize=8)
+def _branch(kinematics: Mechanism) -> Branch:
+    return Branch(kinematics)

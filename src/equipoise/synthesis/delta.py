@@ -1,0 +1,179 @@
+"""The method `delta` (Simionescu, Ciupitu and Ionita 2015): springs that balance a DELTA robot.
+
+full: three zero-free-length springs per leg, exact (section 5). Links 2 and 2' of a parallelogram carry a frame (12)
+that stays upright and lends each leg's link 3 the guide of `rocker`. Spring 10 balances the rods, link 5 and a third of
+the platform, spring 11 the guide, and spring 7 all that hangs on link 2.
+
+axis: one spring 7 per leg (section 6, Eqs. 14-15), best where the platform moves on the vertical axis, and exact there
+if AB = CD and the axes of E are below those of A. optimum: the same springs, chosen over a stated workspace instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import Fault, InputError
+from ..mechanism import Body, Joint, Mechanism
+from ..rotation import to_rpy
+from .delta_legs import DeltaLeg, NotDelta, delta_legs
+from .delta_workspace import OBJECTIVES, Box, Objective, best_springs
+from .design import Design
+from .method import Method, Parameter
+from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
+
+Variant = Literal["full", "axis", "optimum"]
+VARIANTS: tuple[str, ...] = get_args(Variant)
+
+
+def design(
+    mechanism: Mechanism,
+    *,
+    variant: Variant = "full",
+    AV: float = 0.25,
+    AW: float = 0.3,
+    spring_7: float = 0.0,
+    share_7: float = 0.5,
+    link_2p: float = 0.0,
+    heights: Sequence[float] | None = None,
+    reach: float = 0.1,
+    objective: Objective = "peak",
+    samples: int = 2000,
+    seed: int = 0,
+    **guide: Any,
+) -> Design:
+    """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes.
+
+    Args:
+        variant: full, axis or optimum; see the module.
+        AV, AW: where spring 7 is attached [m]: V on link 2, W above A.
+        spring_7: its mass [kg], `share_7` of it at V.
+        link_2p: mass of each link 2' [kg], its mass centre half way along; full only.
+        heights: smallest and largest depth of the platform below the base [m], of axis and optimum; by default the
+            middle half of what the rods allow.
+        reach: of optimum: the platform within +-reach of the axis, both ways [m]; axis is judged there too.
+        objective: of optimum: rms or peak torque over the workspace.
+        guide: the fields of `rocker.Guide`; full only.
+
+    Raises:
+        InputError: a value out of range, or a workspace that the robot does not reach.
+    """
+    if variant not in VARIANTS:
+        raise InputError(Fault(("variant",), f"there is no '{variant}'", VARIANTS))
+    for name, value in (("AV", AV), ("AW", AW)):
+        if not value > 0:
+            raise InputError(Fault((name,), f"must be more than 0 m, found {value:g}"))
+    valid = tuple(f.name for f in fields(Guide))
+    for name in guide:
+        if name not in valid or variant != "full":
+            raise InputError(
+                Fault((name,), f"variant '{variant}' has no such option", valid if variant == "full" else ())
+            )
+    legs, platform = _legs(mechanism)
+    common: dict[str, Any] = {"variant": variant, "AV": AV, "AW": AW, "spring_7": spring_7, "share_7": share_7}
+    if variant == "full":
+        parts = Guide(**guide)
+        made = full(mechanism, parts, AV, AW, spring_7, share_7, link_2p)
+        used = {f.name: getattr(parts, f.name) for f in fields(parts)}
+        return Design.of(made, "delta", {**common, "link_2p": link_2p, **used})
+    box = Box.of(mechanism, legs, platform, heights, reach)
+    found = best_springs(
+        mechanism, legs, box, (AV, AW), (spring_7, share_7), "axis" if variant == "axis" else objective, samples, seed
+    )
+    area = {"heights": list(box.heights), "reach": box.reach}
+    return Design.of(found.mechanism, "delta", {**common, **area, "objective": objective, **found.numbers})
+
+
+def applies(mechanism: Mechanism) -> list[str]:
+    """Why the method does not apply; empty when it does."""
+    try:
+        delta_legs(mechanism)
+    except (NotDelta, InputError) as why:
+        return [str(why)]
+    return []
+
+
+def full(
+    mechanism: Mechanism, guide: Guide, AV: float, AW: float, spring_7: float, share_7: float, link_2p: float
+) -> Mechanism:
+    """The robot with its guides, parallelograms and nine springs."""
+    legs, _ = _legs(mechanism)
+    g = float(np.linalg.norm(mechanism.gravity))
+    bodies, joints, couplings, springs = list(mechanism.bodies), list(mechanism.joints), list(mechanism.couplings), []
+    for i, leg in enumerate(legs, 1):
+        mark = f" {i}"
+        two, three, four, _, _ = leg.links
+        # link 2' stands above A and turns as link 2; the frame is carried by B and stays upright
+        bodies += [Body(f"link 2'{mark}", link_2p, vec3(leg.B / 2)), Body(f"frame 12{mark}", guide.frame)]
+        above = vec3(leg.A + (guide.BF + guide.FT) * leg.R_WL[:, 2])
+        rpy = to_rpy(leg.R_WL)
+        joints += [
+            Joint(f"A'{mark}", "parallelogram", "world", f"link 2'{mark}", above, follows=two),
+            Joint(f"B'{mark}", "parallelogram", two, f"frame 12{mark}", vec3(leg.B), rpy, follows="world"),
+        ]
+        angle = tuple(zip(leg.joints, leg.signs, strict=True))
+        rocker = TwoAxisRocker(
+            f"frame 12{mark}", (0.0, 0.0, 0.0), three, leg.R_3, angle, leg.zero_3, four, leg.C, leg.moment_4
+        )
+        bodies += rocker.bodies(guide, mark)
+        joints += rocker.joints(guide, mark)
+        couplings.append(rocker.coupling(mark))
+        hanging = across(leg, (leg.load + guide.mass + link_2p / 2) * leg.B + leg.moment_2)
+        up, name = leg.R_WL[:, 2], f"spring 7{mark}"
+        springs.append(rocker_spring(name, hanging, two, up, leg.A, (AV, AW), g, (spring_7, share_7)))
+        springs += rocker.springs(guide, mark, g)
+    return replace(
+        mechanism, bodies=tuple(bodies), joints=tuple(joints), couplings=tuple(couplings), springs=tuple(springs)
+    )
+
+
+def across(leg: DeltaLeg, moment: Array) -> Array:
+    """A mass moment in the frame of link 2 without its part along the axis of A, which a turn does not lift."""
+    y = leg.R_2[:, 1]
+    return moment - y * (y @ moment)
+
+
+def _legs(mechanism: Mechanism) -> tuple[tuple[DeltaLeg, ...], str]:
+    try:
+        return delta_legs(mechanism)
+    except NotDelta as why:
+        raise InputError(f"'{mechanism.name}' is no DELTA robot that the method covers: {why}") from why
+
+
+METHOD = Method(
+    "delta",
+    "a DELTA robot: full, exact with three springs per leg and a guide; or one spring per leg, approximate",
+    "Simionescu, Ciupitu and Ionita, Mechanism and Machine Theory 87 (2015), doi 10.1016/j.mechmachtheory.2014.11.008",
+    applies,
+    design,
+    {
+        "variant": Parameter("text", "how many springs per leg, and for what (default full)", VARIANTS),
+        "AV": Parameter("length", "A to where spring 7 is attached to link 2 (default 250 mm)"),
+        "AW": Parameter("length", "A to where spring 7 is attached above it (default 300 mm)"),
+        "spring_7": Parameter("mass", "of each spring 7 (default 0)"),
+        "share_7": Parameter("share", "of the mass of spring 7 that counts at V (default 50 %)"),
+        "link_2p": Parameter("mass", "full: of each link 2' (default 0)"),
+        "BF": Parameter("length", "full: B to F, the guide's half height (default 100 mm)"),
+        "CS": Parameter("length", "full: C to where spring 10 is attached to the rod (default 100 mm)"),
+        "FU": Parameter("length", "full: F to where spring 11 is attached to link 8 (default 80 mm)"),
+        "FT": Parameter("length", "full: F to where spring 11 is attached above it (default 120 mm)"),
+        "FG8": Parameter("length", "full: F to the mass centre of link 8 (default 50 mm)"),
+        "link_8": Parameter("mass", "full: of each link 8 (default 0)"),
+        "link_9": Parameter("mass", "full: of each slider 9 (default 0)"),
+        "frame": Parameter("mass", "full: of each frame 12 (default 0)"),
+        "spring_10": Parameter("mass", "full: of each spring 10 (default 0)"),
+        "spring_11": Parameter("mass", "full: of each spring 11 (default 0)"),
+        "share_10": Parameter("share", "full: of the mass of spring 10 that counts at S (default 50 %)"),
+        "share_11": Parameter("share", "full: of the mass of spring 11 that counts at U (default 50 %)"),
+        "printed": Parameter("flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"),
+        "heights": Parameter("length", "axis, optimum: LOW,HIGH of the platform below the base", many=True),
+        "reach": Parameter("length", "axis, optimum: half width of the workspace (default 100 mm)"),
+        "objective": Parameter("text", "optimum: what is least over the workspace (default peak)", OBJECTIVES),
+        "samples": Parameter("whole", "axis, optimum: random places of the platform (default 2000)"),
+        "seed": Parameter("whole", "of the random places (default 0)"),
+    },
+)

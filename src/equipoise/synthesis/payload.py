@@ -1,0 +1,76 @@
+"""A payload, or a range of payloads, at one point of a link: what to balance, and what fixed springs leave.
+
+The residual torque at a pose is linear in the payload less the balanced one. So its peak over the workspace is the
+same at both ends of a range when the middle is balanced, and by the triangle inequality no fixed springs leave less at
+the worse end: the middle is the minimax choice, whatever the workspace.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..balance import check
+from ..errors import Fault, InputError
+from ..io.text import Names
+from ..mechanism import Mechanism, PointMass
+from ..spring import Spring
+from .given import number, vectors
+from .shoulder import Shoulder
+
+
+@dataclass(frozen=True)
+class Payload:
+    """From `low` to `high` [kg] at `place` (3,) [m] in the frame of `link`; both zero without one."""
+
+    link: str
+    low: float
+    high: float
+    place: Array
+
+    @staticmethod
+    def of(shoulder: Shoulder, masses: Sequence[float] | None, place: Sequence[float] | None) -> Payload:
+        """One mass or a range, at a point of the pitch link or at its mass centre.
+
+        Raises:
+            InputError: not one or two masses, or not a point.
+        """
+        link = shoulder.pitch
+        if place is None:
+            own = sum(m for m, _ in link.lumps)
+            at = link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)
+        else:
+            at = vectors("payload_at", {link.name: place}, [link.name])[link.name]
+        masses = (0.0,) if masses is None else masses
+        if len(masses) not in (1, 2):
+            raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
+        low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
+        if high < low:
+            raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
+        return Payload(link.name, low, high, at)
+
+    @property
+    def middle(self) -> float:
+        """[kg] what to balance."""
+        return (self.low + self.high) / 2
+
+    @property
+    def span(self) -> list[float]:
+        """The mass, or the smallest and largest [kg]."""
+        return [self.low] if self.low == self.high else [self.low, self.high]
+
+    def on(self, mechanism: Mechanism, mass: float) -> Mechanism:
+        """The mechanism with this mass [kg] of payload."""
+        if not mass:
+            return mechanism
+        x, y, z = self.place.tolist()
+        name = Names(point.name for point in mechanism.masses).new("payload")
+        return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
+
+    def residual(self, mechanism: Mechanism, springs: Sequence[Spring]) -> dict[str, float]:
+        """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
+        ends = [check(self.on(mechanism, mass).with_springs(springs)).residual.max for mass in (self.low, self.high)]
+        return dict(zip(mechanism.coordinates, np.maximum(*ends).tolist(), strict=True))
