@@ -147,7 +147,7 @@ def test_a_link_without_moment_keeps_the_criteria_away():
         ({"layout": ["11"]}, "expected two links"),
         ({"layout": ["1-2-3"]}, "expected two links"),
         ({"limit": -1.0}, "limit: must be a finite number of more than 0"),
-        ({"stiffness": {"99": 1.0}}, "nothing that takes it is called '99'"),
+        ({"stiffness": {"99": 1.0}}, "no link that takes it '99'"),
         ({"a": {"13": 0.0}}, "a: must be a finite number other than 0, found 0.0"),
         ({"stock": [0.0]}, "stock: must be"),
         ({"seed": -1}, "seed"),

@@ -57,5 +57,5 @@ def _each(option: str, given: Given, names: Sequence[str]) -> dict[str, Value]:
         return dict.fromkeys(names, given)
     for name in given:
         if name != "*" and name not in names:
-            raise InputError(Fault((option,), f"nothing that takes it is called {nearest(name, names)}", tuple(names)))
+            raise InputError(Fault((option,), f"no link that takes it {nearest(name, names)}", tuple(names)))
     return {name: given.get(name, given.get("*")) for name in names if name in given or "*" in given}  # type: ignore[misc]
