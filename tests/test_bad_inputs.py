@@ -35,7 +35,7 @@ def test_every_message_has_its_file():
     assert {path.stem for path in FILES} == {path.stem for path in FOLDER.glob("*.txt")}
 
 
-@pytest.mark.parametrize("name", ["arm.mjcf", "arm.json", "arm"])
+@pytest.mark.parametrize("name", ["arm.sdf", "arm.json", "arm"])
 def test_other_suffixes_are_refused_with_the_choices(name):
-    with pytest.raises(InputError, match=r"valid: \.yaml, \.yml, \.urdf, \.xml"):
+    with pytest.raises(InputError, match=r"valid: \.yaml, \.yml, \.urdf, \.xml, \.mjcf"):
         io.load(name)

@@ -20,8 +20,15 @@ OF_THE_ZOO = {
     "parallelogram_lamp": "parallelogram_lamp",
     "geared_pair": "mirrored_pair",
 }
-OF_PAPERS = {"lin2010_arm", "lin2010_balanced", "bevel_shoulder", "bevel_balanced"}
-"""Their answers are known to test_lin2010 and test_cho2012."""
+OF_PAPERS = {
+    "lin2010_arm",
+    "lin2010_balanced",
+    "bevel_shoulder",
+    "bevel_balanced",
+    "lee2014_table5a",
+    "lee2014_table5b",
+}
+"""Their answers are known to test_lin2010, test_cho2012 and test_lee2014."""
 
 
 def flat(value: Any, path: str = "") -> dict[str, Any]:

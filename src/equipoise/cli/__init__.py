@@ -13,10 +13,18 @@ from io import TextIOWrapper
 import typer
 
 from ..errors import EquipoiseError
-from . import check, demo, design, export, reproduce, simulate  # each registers its commands, in this order of the help
+from . import (  # each registers its commands, in this order of the help
+    check,
+    demo,
+    design,
+    export,
+    layouts,
+    reproduce,
+    simulate,
+)
 from .app import app
 
-__all__ = ["app", "check", "demo", "design", "export", "main", "reproduce", "simulate"]
+__all__ = ["app", "check", "demo", "design", "export", "layouts", "main", "reproduce", "simulate"]
 
 
 def main() -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import InputError
 from . import terminal
 from .app import Json, app
 
@@ -47,14 +46,11 @@ def reproduce(
 
 def _write(found: list[Reproduction], folder: Path) -> list[Path]:
     """For each paper its table as Markdown, and its figures."""
-    from ..io.files import write_text
+    from ..io.files import make_folder, write_text
     from ..report.plots import save_plot
     from ..report.published import reproduction_markdown
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be made: {(error.strerror or str(error)).lower()}") from error
+    make_folder(folder)
     written = []
     for one in found:
         written.append(folder / f"{one.paper}.md")

@@ -34,10 +34,7 @@ class StiffnessBlocks:
     @staticmethod
     def spring(arm: PlanarArm, one: Installation) -> StiffnessBlocks:
         """Eqs. (7)-(8): K = k w w^H with w = (0, .., -A, 1, .., 1, B, 0, ..)."""
-        w: Complexes = np.zeros(arm.n, np.complex128)
-        w[one.i : one.k - 1] = 1.0
-        w[one.i - 1] = -one.a / arm.lengths[one.i - 1]
-        w[one.k - 1] = one.b / arm.lengths[one.k - 1]
+        w = vector(arm, one)
         return StiffnessBlocks(one.stiffness * (w.conj()[:, None] @ w[None]))
 
     @staticmethod
@@ -69,6 +66,15 @@ class StiffnessBlocks:
         n = len(self.K)
         rows = [" & ".join(_latex(self.K[u, v]) if v >= u else "" for v in range(n)) for u in range(n)]
         return "\\begin{bmatrix} " + " \\\\ ".join(rows) + " \\end{bmatrix}"
+
+
+def vector(arm: PlanarArm, one: Installation) -> Complexes:
+    """(n,) w: what a spring stretches by, as a combination of x_1, r_2, .., r_n."""
+    w: Complexes = np.zeros(arm.n, np.complex128)
+    w[one.i : one.k - 1] = 1.0
+    w[one.i - 1] = -one.a / arm.lengths[one.i - 1]
+    w[one.k - 1] = one.b / arm.lengths[one.k - 1]
+    return w
 
 
 def _text(z: complex) -> str:

@@ -1,13 +1,14 @@
 """Planar serial arms as complex numbers: Lee and Chen (2014), Mechanism and Machine Theory 74, sections 2 and 3.
 
 Links are numbered from 1, the ground, to n. The direction of link j is a unit complex number u_j; link j reaches from
-its joint to the next by r_j = |r_j| u_j, and the ground's direction x_1 is horizontal, with gravity along -i x_1. A
-spring between links i < k stretches
+its joint to the next by ``r_j = |r_j| u_j``, and the ground's direction x_1 is horizontal, with gravity along -i x_1. A
+spring between links i < k stretches::
 
     d = -a u_i + r_{i+1} + .. + r_{k-1} + b u_k,      a, b complex [m]
 
 so that `a` is measured from the DISTAL joint of link i (the joint to link i+1; for the ground the first joint) and `b`
-from the proximal joint of link k. The paper's A = a/|r_i| and B = b/|r_k|, with |x_1| = 1 m, angles arg a and arg b.
+from the proximal joint of link k. The paper's ``A = a/|r_i|`` and ``B = b/|r_k|``, with ``|x_1| = 1 m``, angles arg a
+and arg b.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class PlanarArm:
 
     Attributes:
         links: body that stands for each link, the ground first; other bodies are fixed to one of these.
-        lengths: (n,) |r_j| [m]; 1 for the ground; for the end link the distance of its mass centre, which only scales.
+        lengths: (n,) ``|r_j|`` [m]; 1 for the ground; for the end link the distance of its mass centre, which scales.
         moments: (n,) complex mass moment [kg m] that gravity sees at the end of each u_j: of the link itself about its
             joint and of all that follows at its distal joint, in the direction of u_j. The ground has none.
         gravity: [m/s^2] in the plane of motion.
@@ -91,7 +92,7 @@ class PlanarArm:
         """The arm of a mechanism, its springs left aside.
 
         Args:
-            end: [m] length of the end link, which a mechanism file does not say and which only scales.
+            end: [m] length of the end link, which a mechanism file does not say and which scales.
 
         Raises:
             UnsupportedError: see `obstacles`.

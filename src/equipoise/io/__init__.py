@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 YAML_SUFFIXES = (".yaml", ".yml")
 URDF_SUFFIXES = (".urdf", ".xml")
 MJCF_SUFFIXES = (".mjcf", ".xml")
+MODEL_SUFFIXES = tuple(dict.fromkeys((*URDF_SUFFIXES, *MJCF_SUFFIXES)))  # what a mechanism file can build on
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
@@ -40,7 +41,7 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
 
         return urdf.read(Path(path))
     found = f"a mechanism file cannot be {_suffix(path)}"
-    raise InputError(Fault((), found, (*YAML_SUFFIXES, *URDF_SUFFIXES, MJCF_SUFFIXES[0]), file=os.fspath(path)))
+    raise InputError(Fault((), found, (*YAML_SUFFIXES, *MODEL_SUFFIXES), file=os.fspath(path)))
 
 
 def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:

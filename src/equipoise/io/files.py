@@ -84,6 +84,18 @@ def check_writable(path: str | os.PathLike[str]) -> None:
         raise _fault(name, "cannot be written: permission denied")
 
 
+def make_folder(path: str | os.PathLike[str]) -> None:
+    """Make a folder, unless it exists.
+
+    Raises:
+        InputError: it cannot be made.
+    """
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _fault(os.fspath(path), f"cannot be made: {_reason(error)}") from error
+
+
 def _special(name: str) -> bool:
     """Whether it is a pipe or a device, such as /dev/stdout: written to as it is, not replaced."""
     return os.path.exists(name) and not os.path.isfile(name)

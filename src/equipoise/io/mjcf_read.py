@@ -1,11 +1,11 @@
-"""Read MJCF through MuJoCo's own compiler (extra `sim`), so that its defaults, includes and frames mean what they mean there.
+"""Read MJCF through MuJoCo's own compiler (extra `sim`): its defaults, includes and frames mean what they mean there.
 
 What becomes what, where the two differ:
 
-- A body with several joints becomes a chain of massless bodies; a joint away from its body's origin, a fixed joint more.
+- A body with several joints becomes a chain of massless bodies; a joint off its body's origin, a fixed joint more.
 - A spatial tendon with a stiffness, between two sites, is a spring. A spring length that is not given is the tendon's
   length in the reference pose: the compiler says so. A slack range, wrapping and pulleys are refused.
-- A linear equality between joints, or of a fixed tendon held at a length, is a coupling; a joint held by itself is locked.
+- A linear equality between joints, or of a fixed tendon held at a length, is a coupling; a joint held alone is locked.
 - A connect is a loop; two connects between the same bodies make a hinge loop, a third one is refused as a weld is.
 - A massless leaf of a body with nothing but a mass in one point is a point mass.
 
@@ -85,10 +85,9 @@ class _Reader:
         if self.faults:
             return Mechanism("")
         joints = tuple(replace(j, range=(locked[j.name],) * 2) if j.name in locked else j for j in self.joints)
-        return Mechanism(
-            model.names[: model.names.index(b"\0")].decode() or "mechanism", tuple(self.bodies), joints, couplings, loops,
-            springs, tuple(self.masses), _vec3(model.opt.gravity),
-        )  # fmt: skip
+        name = model.names[: model.names.index(b"\0")].decode() or "mechanism"
+        bodies, masses, gravity = tuple(self.bodies), tuple(self.masses), _vec3(model.opt.gravity)
+        return Mechanism(name, bodies, joints, couplings, loops, springs, masses, gravity)
 
     def _body(self, b: int, leaf: bool) -> None:
         model = self.model
@@ -142,7 +141,9 @@ class _Reader:
             self.faults.append(f"joint '{name}' is free: a mechanism that is not held falls; weld it to the world")
             return turn
         if model.jnt_stiffness[j]:
-            self.faults.append(f"joint '{name}' has a torsion spring (stiffness): only springs between points are known")
+            self.faults.append(
+                f"joint '{name}' has a torsion spring (stiffness): only springs between points are known"
+            )
         axis, zero = model.jnt_axis[j], float(model.qpos0[model.jnt_qposadr[j]])
         if types[kind] == "revolute" and zero:  # drawn at its reference angle, zero is elsewhere
             turn = turn @ about(axis, np.array([-zero]))[0]
@@ -250,7 +251,9 @@ class _Reader:
             wraps = slice(first, first + count)
             low, high = (float(x) for x in model.tendon_lengthspring[t])
             if count != 2 or (model.wrap_type[wraps] != int(self.mj.mjtWrap.mjWRAP_SITE)).any():
-                self.faults.append(f"tendon '{name}' does not run straight between two sites: that is no spring we know")
+                self.faults.append(
+                    f"tendon '{name}' does not run straight between two sites: that is no spring we know"
+                )
             elif high - low > 1e-12 * max(high, 1.0):
                 self.faults.append(
                     f"tendon '{name}' is slack from {low:g} to {high:g} m: give springlength one length twice, '0 0'"

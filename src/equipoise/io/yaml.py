@@ -12,7 +12,7 @@ from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..spring import Spring
 from ..units import to_si
-from . import URDF_SUFFIXES, dh
+from . import MODEL_SUFFIXES, dh, load
 from .emit import to_text
 from .files import read_text
 from .located import Located, parse
@@ -138,17 +138,23 @@ def _assembly(file: MechanismFile, tree: _Tree) -> tuple[dict[str, float], list[
 def _model(name: str, located: Located) -> Mechanism:
     """The mechanism of a model file; its name is relative to the folder of the mechanism file."""
     path = FilePath(located.file).parent / name
-    if path.suffix.lower() not in URDF_SUFFIXES:
-        raise located.error([Fault(("model",), f"'{name}' cannot be read: a model is a URDF file", URDF_SUFFIXES)])
+    suffix = path.suffix.lower()
+    if suffix not in MODEL_SUFFIXES:
+        message = f"'{name}' cannot be read: a model is a URDF or an MJCF file"
+        raise located.error([Fault(("model",), message, MODEL_SUFFIXES)])
     if not path.is_file():
-        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in URDF_SUFFIXES)
+        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in MODEL_SUFFIXES)
         raise located.error([Fault(("model",), f"there is no file {nearest(name, beside)}", tuple(beside[:12]))])
-    from . import urdf
-
     try:
-        return urdf.read(path)
+        model = load(path)
     except InputError as error:
-        raise located.error([Fault(("model",), f"'{name}' cannot be used as a URDF model"), *error.faults]) from error
+        raise located.error([Fault(("model",), f"'{name}' cannot be used as a model"), *error.faults]) from error
+    for key in ("loops", "springs", "masses"):
+        if getattr(model, key):
+            problem = f"'{name}' has {key} of its own, and a model gives bodies, joints and couplings"
+            how = f"load it by itself, or make it a mechanism file: equipoise export {name} --to yaml"
+            raise located.error([Fault(("model",), f"{problem}: {how}")])
+    return model
 
 
 def _translate(faults: Sequence[Fault], tree: _Tree) -> list[Fault]:

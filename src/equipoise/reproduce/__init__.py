@@ -12,6 +12,7 @@ PAPERS: tuple[str, ...] = (
     "cho2012",
     "simionescu2015",
     "lenzo2017",
+    "lee2014",
 )
 """Keys of the papers; each names its file."""
 

@@ -7,10 +7,13 @@ neighbouring link and belong to another layout. The blocks off the diagonal are 
     s,  s alpha,  s beta,  s alpha beta
 
 and must vanish, except that in the ground's row the springs must give what gravity takes: `K_12 > K_13 > .. > K_1n > 0`
-for every arm whose mass centres lie on their links (Eq. (24)). So a proof holds for all such arms at once. Once alpha
-and beta are confined to intervals, their products are bounded linearly; the intervals are split until each case has a
-Motzkin certificate: multipliers y of the equations and z >= 0 of the inequalities, some strict one among them, whose
-combination of the left sides is identically zero. It would read 0 > 0.
+for every arm whose mass centres lie on their links, between the joints (Eq. (24); the end link, whose length only
+scales, counted long enough). So a proof holds for all such arms at once.
+
+Once alpha and beta are confined to intervals, their products are bounded linearly; `prove` splits these by sign until
+each case has a Motzkin certificate: multipliers y of the equations and z >= 0 of the inequalities, some strict one of
+them, whose combination of the left sides is identically zero. It would read 0 > 0. `verify` checks such a proof, with
+intervals of any kind, in exact arithmetic.
 """
 
 from __future__ import annotations

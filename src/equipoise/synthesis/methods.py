@@ -12,6 +12,7 @@ from . import (
     convex,
     delta,
     no_auxiliary,
+    planar,
     pseudobase,
 )
 from .design import Design
@@ -20,6 +21,7 @@ from .method import Method
 _MODULES = (
     convex,
     pseudobase,
+    planar,
     no_auxiliary,
     bevel,
     delta,

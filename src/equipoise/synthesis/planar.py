@@ -1,0 +1,197 @@
+"""The method `planar`: springs straight between the links of a planar arm, exact, in a layout of one's choice.
+
+Y.-Y. Lee and D.-Z. Chen, "Determination of spring installation configuration on statically balanced planar articulated
+manipulators", Mechanism and Machine Theory 74 (2014). A layout says which links the springs join; their stiffnesses and
+attachments solve the design equations, Eq. (23). Beyond the paper: any number of links, mass centres off the link line,
+given stiffnesses or attachments, a limit on the attachments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from math import isinf, log
+from typing import Any
+
+import numpy as np
+
+from ..energy.planar import PlanarArm, obstacles
+from ..errors import EquipoiseError, Fault, InfeasibleError, InputError
+from ..mechanism import Mechanism
+from ..validate import whole_number
+from .criteria import failures
+from .design import Design
+from .exclusion import Layout, prove
+from .given import Given, number, numbers
+from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
+from .layouts import Excluded, default_layout, labels, name
+from .method import Method, Parameter
+from .problem import Progress
+
+STOCK = 200  # choices from stock that are tried
+NEAREST = 4  # stiffnesses in stock to choose from, for each spring
+
+
+def design(
+    mechanism: Mechanism,
+    *,
+    layout: Sequence[str] | None = None,
+    limit: float | None = None,
+    stiffness: Given = None,
+    a: Given = None,
+    b: Given = None,
+    stock: Sequence[float] | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Design:
+    """Exact springs for a layout; of the solutions found, the one that stores least. The arm's own springs go.
+
+    Args:
+        layout: for each spring the two links that it joins: ``13`` or ``1-3``, the ground being link 1, or names of
+            bodies, ``world:forearm``. By default 13, 14, .., 1n, 2n: the fewest springs and the smallest span.
+        limit: [m] of every attachment from its joint: on the ground the first one, else the joint to the next link for
+            the spring's lower link, and the joint of its upper link. By default as close as is found, in multiples of
+            the longest link.
+        stiffness, a, b: fixed values [N/m, m, m] by the name of a spring: ``13``, or ``14_1`` and ``14_2`` where two
+            join the same links. `a` is counted from the joint of the lower link along that link, the ground's upwards;
+            `b` from the joint of the upper link along it; negative values lie on the other side.
+        stock: the stiffnesses to choose from [N/m].
+
+    Raises:
+        InfeasibleError: the layout balances no such arm, or no springs were found; the message says which.
+        InputError: a bad option.  UnsupportedError: not a planar serial arm.
+    """
+    whole_number("seed", seed, 0)
+    bare = mechanism.with_springs(())
+    arm = PlanarArm.of(bare)
+    chosen = default_layout(arm.n) if layout is None else _read(layout, arm)
+    if limit is not None:
+        number("limit", limit, positive=True)
+    fixed = _fixed(labels(chosen), stiffness, a, b)
+    why = reason(arm, chosen)
+    if why:
+        raise InfeasibleError(f"springs {name(chosen)} balance no such arm: {why}")
+    if progress is not None:
+        progress("solving the design equations", 0.0)
+    found = solve(arm, chosen, limit, fixed, seed)
+    if found is not None and stock is not None:
+        found = _from_stock(found, [number("stock", k, positive=True) for k in stock], seed, progress)
+    if found is None:
+        raise InfeasibleError(_none(chosen, limit, fixed, stock))
+    designed = Design.of(bare.with_springs(arm.springs(found.springs)), "planar", _free(found, stock, seed))
+    if not designed.balance.exact:
+        raise EquipoiseError(
+            f"the springs found for {name(chosen)} do not balance: a fault of the method, please report"
+        )
+    return designed
+
+
+def reason(arm: PlanarArm, layout: Layout) -> str | None:
+    """Why a layout cannot balance an arm, proved; None when it may."""
+    weight = arm.moments[1:] / arm.lengths[1:]
+    gaps = np.diff(weight[:-1])  # the end link's length is anything
+    if abs(np.concatenate([weight, gaps])).min() <= 1e-9 * abs(weight).max():
+        return None  # gravity leaves a link alone, or acts on two alike: the criteria do not hold
+    falling = (weight.real > 0).all() and (gaps.real < 0).all()
+    failed = tuple(failures(layout, arm.n))
+    proof = prove(layout, arm.n) if not failed and arm.straight and falling else None
+    return str(Excluded(layout, failed, proof)) if failed or proof else None
+
+
+def _read(texts: Sequence[str], arm: PlanarArm) -> Layout:
+    if not texts:
+        raise InputError(Fault(("layout",), "has no springs; expected pairs of links such as 13,14,14"))
+    return tuple(sorted(_pair(text, arm) for text in texts))
+
+
+def _pair(text: str, arm: PlanarArm) -> tuple[int, int]:
+    ends = text.split(":") if ":" in text else text.split("-") if "-" in text else list(text)
+    every = [*map(str, range(1, arm.n + 1)), *arm.links]
+    numbers = [every.index(end.strip()) % arm.n + 1 for end in ends if end.strip() in every]
+    if len(ends) != 2 or len(numbers) != 2 or numbers[0] == numbers[1]:
+        raise InputError(
+            Fault(("layout",), f"expected two links such as 13, 1-3 or {arm.links[0]}:{arm.links[-1]}, found '{text}'",
+                  tuple(f"{j} ({link})" for j, link in enumerate(arm.links, 1)))
+        )  # fmt: skip
+    return min(numbers), max(numbers)
+
+
+def _fixed(names: list[str], stiffness: Given, a: Given, b: Given) -> Fixed:
+    """The values given; an end on its joint, 0, would make the spring one of the neighbouring link."""
+    given = ((STIFFNESS, "stiffness", stiffness, True), (A, "a", a, None), (B, "b", b, None))
+    return {
+        (names.index(label), which): value
+        for which, option, values, positive in given
+        for label, value in numbers(option, values, names, positive).items()
+    }
+
+
+def _from_stock(free: Solution, stock: Sequence[float], seed: int, progress: Progress | None) -> Solution | None:
+    """A solution with every stiffness from a list, near the free one."""
+    of = free.equations
+    wanted = [one.stiffness for one in free.springs]
+    choices = [
+        [of.fixed[s, STIFFNESS]]
+        if (s, STIFFNESS) in of.fixed
+        else sorted(stock, key=lambda k, w=w: abs(log(k / w)))[:NEAREST]
+        for s, w in enumerate(wanted)
+    ]
+
+    def off(chosen: tuple[float, ...]) -> float:
+        return sum(log(k / w) ** 2 for k, w in zip(chosen, wanted, strict=True))
+
+    tried = sorted(product(*choices), key=off)[:STOCK]
+    for number_, chosen in enumerate(tried):
+        if progress is not None:
+            progress("choosing from stock", number_ / len(tried))
+        held = Equations(of.arm, of.layout, of.limit, {**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
+        found = held.solve(seed, starts=4, near=free.x)
+        if found is not None:
+            return found
+    return None
+
+
+def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> str:
+    asked = [
+        *([f"attachments within {limit:g} m"] if limit is not None else []),
+        *([f"{len(fixed)} given values"] if fixed else []),
+        *(["stiffnesses from stock"] if stock is not None else []),
+    ]
+    given = f" with {' and '.join(asked)}" if asked else ""
+    return f"no springs {name(layout)}{given} were found that balance this arm, nor a proof that there are none"
+
+
+def _free(found: Solution, stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
+    of = found.equations
+    names = labels(of.layout)
+
+    def along(z: complex) -> float | list[float]:
+        return z.real if of.arm.straight else [z.real, z.imag]
+
+    return {
+        "layout": [name((pair,)) for pair in of.layout],
+        "stiffness": {label: one.stiffness for label, one in zip(names, found.springs, strict=True)},
+        "a": {label: along(one.a / upward(one.i)) for label, one in zip(names, found.springs, strict=True)},
+        "b": {label: along(one.b) for label, one in zip(names, found.springs, strict=True)},
+        "limit": None if isinf(of.limit) else of.limit,
+        "stock": None if stock is None else list(stock),
+        "seed": seed,
+    }
+
+
+METHOD = Method(
+    "planar",
+    "springs straight between the links of a planar serial arm, in a layout of your choice: exact, n - 1 for n links",
+    "Lee and Chen (2014), Eqs. (7)-(8), (18), (23), (29)",
+    obstacles,
+    design,
+    {
+        "layout": Parameter("names", "13,14,24: the links of each spring, ground is 1 (default 13,14,..,1n,2n)"),
+        "limit": Parameter("length", "of attachments from their joints (default: as close as is found)"),
+        "stiffness": Parameter("stiffness", "of a spring: stiffness.13, stiffness.14_1", each=True),
+        "a": Parameter("length", "of a spring, along its lower link from the far joint; the ground's is up", each=True),
+        "b": Parameter("length", "of a spring, along its upper link from the near joint", each=True),
+        "stock": Parameter("stiffness", "K,K,...: stiffnesses to choose from", many=True),
+        "seed": Parameter("whole", "of the random starts (default 0)"),
+    },
+)

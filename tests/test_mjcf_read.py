@@ -1,0 +1,204 @@
+"""Reading MJCF: what is written is read back, and what the engine's compiler makes of a file is what counts."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's names come from a compiled module that ships no type stubs)
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from loop_zoo import delta, four_bar
+from random_mechanisms import random_mechanism, random_poses
+from zoo import ZOO, exact_pendulum
+
+import equipoise as eq
+from equipoise.energy.potential import Potential
+from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
+from equipoise.io import mjcf
+from equipoise.kinematics import Tree
+from equipoise.kinematics.sampling import sample
+
+
+def back(m: eq.Mechanism, folder: Path) -> eq.Mechanism:
+    """Written and read; what MJCF cannot hold, the coordinates that steer loops, is given again."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EquipoiseWarning)
+        (folder / "model.xml").write_text(mjcf.to_text(m))
+    found = eq.load(folder / "model.xml")
+    return replace(found, independent=Tree.of(m).coordinates, assembly=m.assembly) if m.loops else found
+
+
+def assert_same(m: eq.Mechanism, n: eq.Mechanism) -> None:
+    """The same coordinates, energies up to a constant, and torques; and the same springs."""
+    a, b = Tree.of(m), Tree.of(n)
+    assert set(a.coordinates) == set(b.coordinates)
+    q = sample(a, 20, 1) if m.loops else random_poses(m, 20, 1)
+    order = [a.coordinates.index(name) for name in b.coordinates]
+    inverse = np.argsort(order)
+    before, after = Potential(m)(q), Potential(n)(q[:, order])
+    size = max(1e-3, float(np.abs(before.gravity_torque).max(initial=0)), float(np.abs(before.springs).max(initial=0)))
+    np.testing.assert_allclose(after.torque[:, inverse], before.torque, atol=1e-9 * size)
+    np.testing.assert_allclose(after.gravity_torque[:, inverse], before.gravity_torque, atol=1e-9 * size)
+    assert np.ptp(after.energy - before.energy) < 1e-9 * size
+    assert [s.name for s in n.springs] == [s.name for s in m.springs]
+    for found, spring in zip(n.springs, m.springs, strict=True):
+        assert (found.stiffness, found.free_length) == pytest.approx((spring.stiffness, spring.free_length), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ZOO)
+def test_the_zoo_round_trip(name, tmp_path):
+    m = ZOO[name]().mechanism
+    assert_same(m, back(m, tmp_path))
+
+
+@pytest.mark.parametrize("m", [four_bar(), delta()], ids=["four-bar", "delta"])
+def test_loops_round_trip(m, tmp_path):
+    n = back(m, tmp_path)
+    assert len(n.loops) == len(m.loops)
+    assert all(loop.axis_a is not None for loop in n.loops)
+    assert_same(m, n)
+
+
+@pytest.mark.slow
+def test_random_mechanisms_round_trip(tmp_path):
+    done, seed = 0, 500
+    while done < 100:
+        seed += 1
+        m = random_mechanism(seed)
+        try:
+            n = back(m, tmp_path)
+        except UnsupportedError:
+            continue  # a ball joint between what a parallelogram joins and what it follows
+        done += 1
+        assert_same(m, n)
+
+
+def test_an_equal_mechanism_where_nothing_is_lost(tmp_path):
+    m = exact_pendulum().mechanism
+    m = replace(m, bodies=tuple(replace(b, inertia=(0.02, 0.02, 0.03, 0.001, 0.002, 0.003)) for b in m.bodies))
+    n = back(m, tmp_path)
+    assert (n.name, n.joints, n.springs, n.gravity) == (m.name, m.joints, m.springs, m.gravity)
+    assert n.bodies[0].inertia == pytest.approx(m.bodies[0].inertia, rel=1e-9)
+
+
+# The engine's own defaults ------------------------------------------------------------------------------------------
+
+
+ONE_KG = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+
+
+def read(tmp_path: Path, inside: str, more: str = "", world: str = "") -> eq.Mechanism:
+    """A model with an arm of 2 kg on a hinge, `inside` the arm, `more` after the world's bodies."""
+    path = tmp_path / "robot.xml"
+    path.write_text(
+        f"""<?xml version="1.0"?>
+        <!-- <robot> is elsewhere -->
+        <mujoco model="arm"><default><joint axis="0 -1 0"/></default><worldbody>
+        <site name="hook" pos="0 0 0.2"/>{world}
+        <body name="arm"><joint name="shoulder"/><inertial pos="0.3 0 0" mass="2" diaginertia="0.01 0.01 0.01"/>
+        <site name="end" pos="0.15 0 0"/>{inside}</body></worldbody>{more}</mujoco>"""
+    )
+    return eq.load(path)
+
+
+def spring(attributes: str) -> str:
+    return f'<tendon><spatial name="s" {attributes}><site site="hook"/><site site="end"/></spatial></tendon>'
+
+
+def test_defaults_and_names(tmp_path):
+    m = read(tmp_path, "")
+    assert (m.name, m.joints[0].axis, m.bodies[0].com) == ("arm", (0.0, -1.0, 0.0), (0.3, 0.0, 0.0))
+    assert m.joints[0].range is None
+
+
+def test_an_unset_spring_length_is_that_of_the_reference_pose(tmp_path):
+    m = read(tmp_path, "", spring('stiffness="100"'))
+    assert m.springs[0].free_length == pytest.approx(0.25, rel=1e-9)
+    zero = read(tmp_path, "", spring('stiffness="196.2" springlength="0 0"'))
+    assert zero.springs[0].free_length == 0
+    assert eq.check(zero).exact
+
+
+def test_several_joints_anchors_and_references(tmp_path):
+    """A body with two hinges, the second away from its origin and with a reference angle: as the engine places it."""
+    import mujoco
+
+    inside = """<body name="hand" pos="0.5 0 0" euler="0 30 0"><joint name="a" pos="0.1 0.02 0"/>
+    <joint name="b" axis="0 0 1" ref="20" range="-50 70" limited="true"/>
+    <inertial pos="0.1 0 0.05" mass="1" diaginertia="1 1 1"/></body>"""
+    m = read(tmp_path, inside)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.3, -0.7, 0.9
+    mujoco.mj_forward(model, data)
+    tree = Tree.of(m)
+    assert tree.coordinates == ("shoulder", "a", "b")
+    poses = tree.poses(np.array([[0.3, -0.7, 0.9]]))
+    hand = tree.index["hand"]
+    np.testing.assert_allclose(poses.p[0, hand], data.body("hand").xpos, atol=1e-12)
+    np.testing.assert_allclose(poses.R[0, hand].ravel(), data.body("hand").xmat, atol=1e-12)
+    np.testing.assert_allclose(Potential(m)(np.array([[0.3, -0.7, 0.9]])).torque[0], data.qfrc_bias, atol=1e-9)
+    assert m.joints[-1].range == pytest.approx(tuple(np.radians([-50, 70])))
+
+
+def test_equalities(tmp_path):
+    inside = f"""<body name="lever" pos="0.4 0 0"><joint name="elbow"/>{ONE_KG}</body>
+    <body name="slider" pos="0.4 0 0"><joint name="slide" type="slide"/>{ONE_KG}</body>"""
+    equality = """<equality><joint joint1="elbow" joint2="shoulder" polycoef="0.1 -2 0 0 0"/>
+    <joint joint1="slide" polycoef="0.05 0 0 0 0"/></equality>"""
+    m = read(tmp_path, inside, equality)
+    assert m.couplings == (eq.Coupling("elbow", (("shoulder", -2.0),), 0.1),)
+    assert m.joints[2].range == (0.05, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("inside", "more", "message"),
+    [
+        ("", spring('stiffness="100" springlength="0 0.2"'), "tendon 's' is slack from 0 to 0.2 m"),
+        (f'<body name="hand"><joint name="w" stiffness="3"/>{ONE_KG}</body>', "",
+         "joint 'w' has a torsion spring"),
+        (f'<body name="hand"><joint name="w"/>{ONE_KG}</body>',
+         '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
+        (f'<body name="hand" gravcomp="1">{ONE_KG}</body>', "",
+         "body 'hand' has gravity compensation"),
+        (f'<body name="hand" pos="1 0 0"><joint name="w"/>{ONE_KG}</body>',
+         '<equality><weld name="w" body1="hand"/></equality>', "equality 'w' is no connect"),
+    ],
+)  # fmt: skip
+def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):
+    with pytest.raises(InputError, match=message):
+        read(tmp_path, inside, more)
+
+
+def test_a_free_body_is_refused(tmp_path):
+    world = f'<body name="ball"><freejoint name="f"/>{ONE_KG}</body>'
+    with pytest.raises(InputError, match="joint 'f' is free"):
+        read(tmp_path, "", world=world)
+
+
+def test_what_does_not_compile_says_why(tmp_path):
+    with pytest.raises(InputError, match=r"robot.xml: MuJoCo does not compile it: .*hing"):
+        read(tmp_path, '<joint type="hing"/>')
+
+
+def test_as_a_model_of_a_mechanism_file(tmp_path):
+    read(tmp_path, "")
+    text = (
+        "schema: 1\nname: x\nmodel: robot.xml\nsprings:\n  - {name: s, body_a: world, p_a: [0, 0, 0.2], body_b: arm, "
+    )
+    (tmp_path / "m.yaml").write_text(text + "p_b: [0.15, 0, 0], stiffness: 196.2}\n")
+    assert eq.check(eq.load(tmp_path / "m.yaml")).exact
+    read(tmp_path, "", spring('stiffness="100"'))
+    with pytest.raises(InputError, match=r"m.yaml:3:8: model: 'robot.xml' has springs of its own"):
+        eq.load(tmp_path / "m.yaml")
+
+
+def test_command_line(run, tmp_path):
+    read(tmp_path, "", spring('stiffness="196.2" springlength="0 0"'))
+    code, text, _ = run("check", tmp_path / "robot.xml")
+    assert code == 0
+    assert "EXACT" in text
