@@ -112,9 +112,9 @@ def desk_lamp() -> Mechanism:
 def pantograph() -> Mechanism:
     """A pantograph that carries a tool, exact with two springs and no upright body but the ground.
 
-    Its long bars point along e and f; gravity's moments about them are `along_e` and `along_f`. A spring from the ground to
-    the point ``2 a e + s f`` of the second bar, s in their proportion, balances both, but for a term with ``e . f``; the
-    spring across the parallelogram from the knee to the inner joint, ``|a e - b f|`` long, takes that away.
+    Its long bars point along e and f, with gravity's moments `along_e` and `along_f`. A spring from the ground to the
+    point ``2 a e + s f`` of the second bar, s in their proportion, balances both but for a term with ``e . f``; a
+    spring across the parallelogram from the knee to the outer joint, ``|a e - b f|`` long, takes that away.
     """
     a, b, tool = 0.2, 0.25, 0.8  # [m] half the long bars, [kg]
     masses = {"upper bar": 0.6, "lower bar": 0.5, "inner bar": 0.25, "outer bar": 0.3}
@@ -153,8 +153,8 @@ def pantograph() -> Mechanism:
 def rssr() -> Mechanism:
     """Two modules of Lin, Shieh and Chen (2010) with real joints: each pseudobase hangs on two spherical joints.
 
-    The method `pseudobase` gives the masses, lengths and springs; its parallelogram joints become an auxiliary link on a
-    revolute joint and a coupler on a spherical one, which meet at D. Each coupler may spin about CD: an idle freedom.
+    The method `pseudobase` gives masses, lengths and springs; its parallelogram joints become an auxiliary link on a
+    revolute joint and a coupler on a spherical one, which meet at D. Each coupler may spin about CD, an idle freedom.
     """
     height, limits = 0.12, (radians(-40), radians(40))
     arm = Mechanism(
@@ -205,7 +205,7 @@ def hexapod() -> Mechanism:
             Joint(f"swing{mark}", "revolute", "world", f"yoke{mark}", at, (0.0, 0.0, azimuth), axis=(1.0, 0.0, 0.0)),
             hinge(f"hip{mark}", f"yoke{mark}", f"thigh{mark}"),
         ]
-        actuators.append(hinge(f"knee{mark}", f"thigh{mark}", f"shin{mark}", thigh, (80.0, 110.0)))
+        actuators.append(hinge(f"knee{mark}", f"thigh{mark}", f"shin{mark}", thigh, (85.0, 105.0)))
         if i == 0:
             passive.append(Joint("ball 1", "spherical", "shin 1", "ball", (shin, 0.0, 0.0), rpy=(0.0, 2.4, 0.0)))
             offset = (-end[0], -end[1], -end[2])
@@ -229,8 +229,8 @@ def hexapod() -> Mechanism:
 
 
 def delta() -> Mechanism:
-    """The example robot of Simionescu, Ciupitu and Ionita (2015), a little smaller at the platform."""
-    return DeltaRobot(platform=0.1, range=(-0.2, 1.3)).mechanism()
+    """The example robot of Simionescu, Ciupitu and Ionita (2015), without springs."""
+    return DeltaRobot(range=(-0.3, 1.2)).mechanism()
 
 
 def delta_balanced() -> Mechanism:

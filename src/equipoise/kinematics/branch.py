@@ -27,7 +27,9 @@ MARGIN = 0.25  # of that box, on every side
 ENOUGH = 0.5  # of the goals: no more rounds
 ATTEMPTS = 3  # nearest waypoints that a pose is tried from
 FLOOD = 3  # nearest reached waypoints that a goal is tried from
-COARSE = 0.02  # [rad, or share of the size] shortest step towards a waypoint, which need not be near a singular pose
+COARSE = (
+    0.02  # [rad, or share of the size] shortest step but from the nearest waypoint: it ends far from singular poses
+)
 BATCH_ENTRIES = 8_000_000  # velocities of the poses that are followed together: few of them need the last steps
 REMEMBERED = 131_072  # poses
 
