@@ -12,6 +12,7 @@ from equipoise.mechanism import Mechanism
 from equipoise.synthesis import design
 from equipoise.synthesis.delta_legs import NotDelta, delta_legs
 from equipoise.synthesis.delta_robot import DeltaRobot
+from equipoise.synthesis.delta_workspace import Box, best_springs
 
 ODD = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, rods=0.12, com_2=0.15, com_4=0.3)
 """Nothing is special: AB is not CD, the radii differ, mass centres are off the middle."""
@@ -145,3 +146,26 @@ def test_the_optimum_over_a_workspace_beats_the_formula():
     assert found["times_better"] == pytest.approx(found["axis_formula_peak"] / found["residual_peak"])
     rms = design(DeltaRobot().mechanism(), "delta", variant="optimum", objective="rms", **options).free_parameters
     assert found["residual_peak"] < rms["residual_peak"]
+
+
+@pytest.mark.parametrize("objective", ["rms", "peak"])
+def test_convex_is_at_least_as_good_as_the_papers_springs(objective):
+    """Over the joint ranges, with the pairs of the paper's three springs, and never below its bound."""
+    robot = DeltaRobot(range=(-0.3, 1.2)).mechanism()
+    pairs = [("world", f"link 2.{i}") for i in (1, 2, 3)]
+    found = design(robot, "convex", pairs=pairs, radius=0.45, springs=3, samples=200, objective=objective)
+    u = sample(Tree.of(robot), 200)
+    paper, own, bare = (Potential(m)(u).torque for m in (paper_springs(robot), found.mechanism, robot))
+    measure = {"rms": lambda t: np.sqrt((t**2).sum(axis=1).mean()), "peak": lambda t: np.abs(t).max()}[objective]
+    assert measure(own) == pytest.approx(found.residual, rel=1e-6)
+    assert measure(bare) == pytest.approx(found.unbalanced, rel=1e-6)
+    assert found.bound is not None
+    assert 0 < found.bound <= found.residual < 0.8 * measure(paper)
+    assert found.residual < 1.01 * found.bound
+
+
+def paper_springs(robot: Mechanism) -> Mechanism:
+    """The robot with the paper's one spring per leg (Eqs. 14-15), not judged."""
+    legs, platform = delta_legs(robot)
+    box = Box.of(robot, legs, platform, [0.5, 0.8], 0.1)
+    return best_springs(robot, legs, box, (0.25, 0.3), (0.0, 0.5), "axis", 10, 0).mechanism

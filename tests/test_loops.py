@@ -228,8 +228,9 @@ def reachable(count: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     while sum(len(p) for p, _ in found) < count:
         p = rng.uniform([-0.5, -0.5, -0.95], [0.5, 0.5, -0.2], (2 * count, 3))
         t = delta_inverse(p)
-        ok = np.isfinite(t).all(axis=1)
-        ok[ok] = ((t[ok] >= low) & (t[ok] <= high)).all(axis=1) & (volume(p[ok], t[ok]) > 0.01)
+        real = np.isfinite(t).all(axis=1)
+        p, t = p[real], t[real]
+        ok = ((t >= low) & (t <= high)).all(axis=1) & (volume(p, t) > 0.01)
         found.append((p[ok], t[ok]))
     places, angles = (np.concatenate(x)[:count] for x in zip(*found, strict=True))
     return places, angles

@@ -153,6 +153,11 @@ class Tree:
         """ "rad" or "m" for each coordinate; its torque is in N m or N."""
         return tuple("rad" if turns else "m" for turns in self.turns)
 
+    @property
+    def rest(self) -> Array:
+        """(n,) a configuration in which it can be: all zero, or as its loops are assembled."""
+        return np.zeros(self.n)
+
     def values(self, q: Array) -> Array:
         """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""
         return q @ self.C.T + self.s0
