@@ -176,12 +176,12 @@ def four_bar_angles(a: float, b: float, c: float, d: float, theta: np.ndarray, s
 lengths = st.floats(0.15, 1.0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(lengths, lengths, lengths, lengths, st.integers(0, 2**31))
 def test_random_four_bars(a, b, c, d, seed):
     """Every pose that closes agrees with the closed form of its branch; where the crank turns round, all close."""
     side = -1.0
-    start = np.random.default_rng(seed).uniform(-pi, pi, 400)
+    start = np.random.default_rng(seed).uniform(-pi, pi, 100)
     rocker = four_bar_angles(a, b, c, d, start, side)
     r = np.abs(a * np.exp(1j * start) - d)
     transmission = np.abs((b**2 + c**2 - r**2) / (2 * b * c))  # 1 where the linkage is singular
