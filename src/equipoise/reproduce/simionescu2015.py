@@ -19,6 +19,7 @@ from ..mechanism import Body, Joint, Mechanism
 from ..synthesis.delta import design, one_per_leg
 from ..synthesis.delta_legs import DeltaLeg, delta_legs
 from ..synthesis.delta_robot import DeltaRobot
+from ..synthesis.delta_workspace import Goal
 from ..synthesis.rocker import Guide, TwoAxisRocker
 from .record import Map, Plot, Reproduction, Row
 
@@ -196,7 +197,8 @@ def _map(robot: Mechanism) -> Map:
     legs, _ = delta_legs(robot)
     u = _actuators(legs, places)
     panels = {}
-    for label, goal in (("spring by (15)", "axis"), ("optimised over ±0.1 m", "peak")):
+    goals: dict[str, Goal] = {"spring by (15)": "axis", "optimised over ±0.1 m": "peak"}
+    for label, goal in goals.items():
         _, found = one_per_leg(robot, goal, **SPRING, reach=0.1)
         panels[label] = np.abs(Potential(found.mechanism)(u).torque).max(axis=1).reshape(x.shape)
     title = "Largest residual moment of the three actuators, platform 0.65 m below the base"

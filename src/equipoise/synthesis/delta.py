@@ -21,7 +21,7 @@ from ..errors import Fault, InputError
 from ..mechanism import Body, Joint, Mechanism
 from ..rotation import to_rpy
 from .delta_legs import DeltaLeg, NotDelta, delta_legs
-from .delta_workspace import OBJECTIVES, Box, Found, Objective, best_springs
+from .delta_workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 from .design import Design
 from .method import Method, Parameter
 from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
@@ -79,7 +79,7 @@ def design(
         made = full(mechanism, parts, AV, AW, spring_7, share_7, link_2p)
         used = {f.name: getattr(parts, f.name) for f in fields(parts)}
         return Design.of(made, "delta", {**common, "link_2p": link_2p, **used})
-    goal = "axis" if variant == "axis" else objective
+    goal: Goal = "axis" if variant == "axis" else objective
     box, found = one_per_leg(
         mechanism, goal, AV=AV, AW=AW, spring_7=spring_7, share_7=share_7, heights=heights, reach=reach,
         samples=samples, seed=seed,
@@ -90,7 +90,7 @@ def design(
 
 def one_per_leg(
     mechanism: Mechanism,
-    goal: Literal["axis", "rms", "peak"],
+    goal: Goal,
     *,
     AV: float = 0.25,
     AW: float = 0.3,
