@@ -1,9 +1,9 @@
 """The best set of stock springs for a design: a proof of optimality by bounds that meet.
 
 The attachments move so that the stock does exactly what the design's springs do. Relaxations (see `relaxation`) give
-sets of springs that might be possible, the cheapest first, and a bound of the cost of every set. Each is settled: either
-Newton's method finds attachments at which it balances within all limits, or ever finer cells prove that there are none.
-Nothing cheaper than the bound exists, so the first set that is possible is the best.
+sets of springs that might be possible, the cheapest first, and a bound of the cost of every set. Each is settled:
+either Newton's method finds attachments where it balances within all limits, or ever finer cells prove that none
+exist. Nothing cheaper than the bound exists, so the first set that is possible is the best.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ GOALS: tuple[Goal, ...] = ("mass", "price")
 CELLS = 4  # of each distance, to begin with
 ROUNDS = 60  # refinements of one set of springs before it counts as unsettled
 WORST = 12  # poses at which each spring's largest force is looked at, to begin with
+SPREAD = 200  # they are every 200th part of all poses apart, from where it is longest
 OVER = 1e-9  # forces over their limit by this share are rounding
 
 
@@ -145,7 +146,7 @@ def _relaxation(movable: Movable, catalogue: Catalogue, goal: Goal) -> Relaxatio
     ]
     cost = np.array([s.mass if goal == "mass" else s.price for s in catalogue])
     relaxation = Relaxation(movable, rate, force, cost, allowed, edges)
-    relaxation.pulls += _pulls(movable, np.ones_like(movable.low))
+    relaxation.pulls += _pulls(movable, np.ones_like(movable.low), WORST)
     return relaxation
 
 
@@ -187,7 +188,7 @@ def _nearest(t: Array, e_a: Array, e_b: Array, a: Array, b: Array) -> Array:
     return np.where(inner, np.minimum(best, length(np.where(inner, x, 0.0), np.where(inner, y, 0.0))), best)
 
 
-def _pulls(movable: Movable, shares: Array, count: int = WORST) -> list[Pull]:
+def _pulls(movable: Movable, shares: Array, count: int) -> list[Pull]:
     """The forces of every spring at the sampled poses where it is longest."""
     t, e_a, e_b = movable.directions(movable.poses)
     a, b = shares.T * np.array([[ray.length for ray in pair] for pair in movable.rays]).T

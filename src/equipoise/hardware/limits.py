@@ -64,7 +64,7 @@ SOURCES = {
     "compression": "EN 13906-1:2013: cold coiled, static, usual share below the solid length's",
     "solid": "EN 13906-1:2013, 10: cold coiled, at solid length",
     "hook_bending": "Shigley's Mechanical Engineering Design, table 10-7: 75 % of Rm for carbon steel, not set",
-    "hook_torsion": "Shigley's Mechanical Engineering Design, table 10-7: 40 % of Rm for carbon steel, end of the spring",
+    "hook_torsion": "Shigley's Mechanical Engineering Design, table 10-7: 40 % of Rm for carbon steel, at the end",
     "shear_strength": "Shigley's Mechanical Engineering Design, eq. 10-30: Ssu = 0.67 Sut",
     "amplitude": "Zimmerli's data, unpeened, in Shigley's Mechanical Engineering Design, eq. 10-28",
     "mean": "Zimmerli's data, unpeened, in Shigley's Mechanical Engineering Design, eq. 10-28",

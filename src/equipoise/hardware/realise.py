@@ -53,8 +53,8 @@ class Options:
     """
 
     wires: tuple[Wire, ...] = (WIRES["DH"],)
-    limits: Limits = Limits()
-    envelope: Envelope = Envelope()
+    limits: Limits = field(default_factory=Limits)
+    envelope: Envelope = field(default_factory=Envelope)
     pulley: float = 10 * MM
     ends: float = 10 * MM
     most: int = 8

@@ -1,12 +1,12 @@
 """Choosing from stock as a mixed-integer linear program that is never too strict.
 
 For spring s one stock spring is taken: k = sum k_i x_i. With u = ka and v = kb the balance equations, the ranges of a
-and b, and the largest force, k |t - a e_a + b e_b| <= F_i in any direction, are linear. Only w = kab is not: over a cell
-[p, q] x [r, s] of distances it is kept between McCormick's four planes, multiplied by k,
+and b, and the largest force, k |t - a e_a + b e_b| <= F_i in any direction, are linear. Only w = kab is not: over a
+cell [p, q] x [r, s] of distances it is kept between McCormick's four planes, multiplied by k,
 
     w >= p v + r u - p r k,   w >= q v + s u - q s k,   w <= q v + r u - q r k,   w <= p v + s u - p s k
 
-which smaller cells bring as near to the truth as need be. So its optimum is a bound, and what it excludes is impossible.
+which smaller cells bring as near to the truth as need be. So its optimum is a bound, what it excludes is impossible.
 All distances and stiffnesses are relative to the design's.
 """
 
@@ -15,11 +15,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Integers
 from .movable import Movable
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 TERMS = 5  # variables of a cell: whether it is the one, and its k, u, v, w
 
@@ -56,7 +60,7 @@ class Relaxation:
     stiffness: Array
     force: Array
     cost: Array
-    allowed: list[Array]
+    allowed: list[Integers]
     edges: list[tuple[Array, Array]]
     pulls: list[Pull] = field(default_factory=list)
     excluded: list[tuple[int, ...]] = field(default_factory=list)
@@ -96,7 +100,8 @@ class Relaxation:
         options = {"mip_rel_gap": 0.0, "presolve": True}
         if np.isfinite(seconds):
             options["time_limit"] = max(seconds, 0.1)
-        constraint = LinearConstraint(program.matrix(), np.array(program.low), np.array(program.high))
+        # scipy takes arrays here; its stubs want one number
+        constraint = LinearConstraint(program.matrix(), np.array(program.low), np.array(program.high))  # type: ignore[arg-type]
         found = milp(
             program.objective,
             constraints=constraint,
@@ -130,8 +135,11 @@ class _Program:
             self.c0.append(size + len(stock))
             size += len(stock) + TERMS * len(cells)
         self.slack, self.size = size, size + 1  # how far inside: only with the stock fixed
-        self.rows, self.columns, self.values = [], [], []
-        self.low, self.high = [], []
+        self.rows: list[Integers] = []
+        self.columns: list[Integers] = []
+        self.values: list[Array] = []
+        self.low: list[float] = []
+        self.high: list[float] = []
         self.integer = np.zeros(self.size)
         self.objective = np.zeros(self.size)
         upper = np.full(self.size, np.inf)
@@ -146,7 +154,7 @@ class _Program:
         upper[self.slack] = 0.0 if fixed is None else 1.0
         if fixed is not None:
             self.objective[self.slack] = -1.0
-        self.bounds = Bounds(lower, upper)
+        self.bounds = Bounds(lower, upper)  # type: ignore[arg-type]  # the stubs want one number
         for i in range(len(self.allowed)):
             self._spring(i)
         self._balance()
@@ -155,24 +163,24 @@ class _Program:
         for out in r.excluded if fixed is None else ():
             self._exclude(out)
 
-    def add(self, entries: Sequence[tuple[Array | int, Array | float]], low: float, high: float) -> None:
+    def add(self, entries: Sequence[tuple[Integers | int, Array | float]], low: float, high: float) -> None:
         """One row of the constraints."""
         for columns, values in entries:
-            columns = np.atleast_1d(columns)
-            self.columns.append(columns)
-            self.values.append(np.broadcast_to(np.asarray(values, float), columns.shape))
-            self.rows.append(np.full(len(columns), len(self.low)))
+            at = np.atleast_1d(columns)
+            self.columns.append(at)
+            self.values.append(np.broadcast_to(np.asarray(values, float), at.shape))
+            self.rows.append(np.full(len(at), len(self.low)))
         self.low.append(low)
         self.high.append(high)
 
-    def matrix(self):
+    def matrix(self) -> csr_array:
         """The constraints' matrix."""
         from scipy.sparse import csr_array
 
         rows, columns, values = (np.concatenate(x) for x in (self.rows, self.columns, self.values))
         return csr_array((values, (rows, columns)), shape=(len(self.low), self.size))
 
-    def sums(self, i: int) -> tuple[Array, Array, Array, Array]:
+    def sums(self, i: int) -> tuple[Integers, Integers, Integers, Integers]:
         """Columns of k, u, v, w in all cells of spring `i`."""
         first = self.c0[i] + TERMS * np.arange(len(self.cells[i]))
         return first + 1, first + 2, first + 3, first + 4

@@ -1,7 +1,7 @@
 """Springs that are in stock: a table of one row per spring, as CSV or Parquet.
 
-The columns are `COLUMNS`. A header may state a unit in brackets, ``rate [N/mm]``; without one the column is in SI units.
-A vendor's own table is read by saying which of its columns is which.
+The columns are `COLUMNS`. A header may state a unit in brackets, ``rate [N/mm]``; without one the column is in SI
+units. A vendor's own table is read by saying which of its columns is which.
 """
 
 from __future__ import annotations

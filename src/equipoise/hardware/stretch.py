@@ -54,7 +54,7 @@ class Pulley:
         y = np.linalg.norm(across, axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             n = np.where(y[:, None] > 0, across / y[:, None], 0.0)
-        # in the plane of c and n the pulley's centre is at (0, r); the cable touches it from (0, 0) over the angle `wrap`
+        # in the plane of c and n the pulley's centre is at (0, r); the cable lies on it from (0, 0) on, over `wrap`
         free = np.sqrt(np.maximum(x**2 + (y - r) ** 2 - r**2, 0.0))
         wrap = np.mod(np.arctan2(y - r, x) + np.arctan2(r, free) + SLIP, 2 * np.pi) - SLIP
         stretch = r * wrap + free + self.preload
