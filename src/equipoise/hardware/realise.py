@@ -1,4 +1,4 @@
-"""How the springs of a design can be made: four ways to install a helical spring, and what each leaves unbalanced.
+"""How the springs of a design can be made: five ways to install a helical spring, and what each leaves unbalanced.
 
     direct      an extension spring between the attachments; its initial tension F_0 makes up for its length L_0, and
                 what it does not make up for, L_0 - F_0/k, is left as free length
@@ -8,6 +8,7 @@
                 (the same, Fig. 8a)
     pulley      an extension spring elsewhere on A's body, pulled by a cable that leaves over a pulley at A: no free
                 length, but the cable's length over the pulley is not quite the distance from A to B
+    eyelet      the same with a smooth hole instead of the pulley: no error of length, more friction
 
 Residuals are those of the mechanism with this one spring so installed and the others ideal.
 """
@@ -31,10 +32,11 @@ from .stretch import Pulley, Straight, Stretch, beyond
 from .winding import Envelope, Need, Winding, compression, extension, side_by_side
 from .wire import MM, WIRES, Wire
 
-KINDS = ("direct", "case", "telescope", "pulley")
-FRICTION = {"direct": 0.0, "case": 0.03, "telescope": 0.05, "pulley": 0.02}
+KINDS = ("direct", "case", "telescope", "pulley", "eyelet")
+FRICTION = {"direct": 0.0, "case": 0.03, "telescope": 0.05, "pulley": 0.02, "eyelet": 0.15}
 """Share of the spring's force that friction holds back. Assumed, by no standard: loops that roll on pins, a spring that
-rubs in its case, a spring that rubs and a rod that slides, a pulley on ball bearings."""
+rubs in its case, a spring that rubs and a rod that slides, a pulley on ball bearings, a polished hole with the cable
+bent by about a right angle."""
 LEAST_FREE = 0.1 * MM  # less free length than this counts as none when springs are compared
 
 
@@ -96,20 +98,18 @@ def realisations(balance: Balance, i: int, options: Options) -> tuple[Realisatio
     spring, use = balance.mechanism.springs[i], balance.use[i]
     shortest, longest, free = use.min_length, use.max_length, spring.free_length
     k = spring.stiffness
+    need = Need(k, k * max(shortest - free, 0.0), use.max_force)
+    pushes = ""
     if shortest < free - LEAST_FREE:
-        # it would also have to push
-        least, most = 0.0, use.max_force
-    else:
-        least, most = k * max(shortest - free, 0.0), k * (longest - free)
-    need = Need(k, least, most)
-    pushes = f"it comes to {shortest / MM:.1f} mm, less than its free length, where it must push" * (
-        shortest < free - LEAST_FREE
-    )
+        pushes = (
+            f"it comes to {shortest / MM:.1f} mm, less than its free length of {free / MM:.1f} mm, where it must push"
+        )
     return (
         _direct(balance, i, need, options, pushes),
         _case(balance, i, need, options, pushes),
         _telescope(balance, i, need, options, pushes),
-        _pulley(balance, i, need, options, pushes),
+        _cable(balance, i, need, options, pushes, "pulley", options.pulley),
+        _cable(balance, i, need, options, pushes, "eyelet", 0.0),
     )
 
 
@@ -159,20 +159,22 @@ def _telescope(balance: Balance, i: int, need: Need, options: Options, pushes: s
     return _ideal(balance, Realisation("telescope", winding, reason, law, options.friction["telescope"], behind))
 
 
-def _pulley(balance: Balance, i: int, need: Need, options: Options, pushes: str) -> Realisation:
+def _cable(
+    balance: Balance, i: int, need: Need, options: Options, pushes: str, kind: str, radius: float
+) -> Realisation:
     mechanism, spring = balance.mechanism, balance.mechanism.springs[i]
     winding = side_by_side(
         lambda part: extension(part, options.wires, options.limits, options.envelope), need, options.most
     )
     d = _seen_from_a(mechanism, spring)
-    law = best_pulley(mechanism, i, d, options.pulley)
+    law = best_pulley(mechanism, i, d, radius)
     reason = pushes or winding.reason
-    if not reason and options.pulley and (gap := float(beyond(law, d).min())) <= 0:
-        reason = f"the cable's end comes {-gap / MM:.1f} mm inside the pulley of {options.pulley / MM:g} mm radius"
-    made = Realisation("pulley", winding, reason, law, options.friction["pulley"])
+    if not reason and radius and (gap := float(beyond(law, d).min())) <= 0:
+        reason = f"the cable's end comes {-gap / MM:.1f} mm inside the pulley of {radius / MM:g} mm radius"
+    made = Realisation(kind, winding, reason, law, options.friction[kind])
     if not made.works:
         return made
-    if not options.pulley:
+    if not radius:
         return _ideal(balance, made)
     judged = leaves(mechanism, [law if j == i else Straight(s.free_length) for j, s in enumerate(mechanism.springs)])
     return replace(made, residual=judged.residual, share=judged.share)

@@ -82,7 +82,7 @@ class Winding:
     @property
     def mass(self) -> float:
         """[kg] of all of them."""
-        return self.count * self.spring.mass
+        return float(self.count * self.spring.mass)
 
     @property
     def reason(self) -> str:
