@@ -78,8 +78,10 @@ class Bill:
             "springs": [_item(item, self.options.limits) for item in self.items],
             "residual": {"design": self.balance.residual.max.tolist(), "design_share": self.balance.relative}
             | (_left(self.left) if self.left else {}),
-            "limits": {name: {"value": value, "source": SOURCES[name]} for name, value in asdict(self.options.limits).items()},
-        }  # fmt: skip
+            "limits": {
+                name: {"value": value, "source": SOURCES[name]} for name, value in asdict(self.options.limits).items()
+            },
+        }
 
 
 def bill(

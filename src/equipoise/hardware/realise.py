@@ -96,7 +96,7 @@ class Realisation:
 def realisations(balance: Balance, i: int, options: Options) -> tuple[Realisation, ...]:
     """All ways to make spring `i` of a judged mechanism, those that do not work with the reason."""
     spring, use = balance.mechanism.springs[i], balance.use[i]
-    shortest, longest, free = use.min_length, use.max_length, spring.free_length
+    shortest, free = use.min_length, spring.free_length
     k = spring.stiffness
     need = Need(k, k * max(shortest - free, 0.0), use.max_force)
     pushes = ""

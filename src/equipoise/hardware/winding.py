@@ -24,6 +24,7 @@ from .wire import MM, Wire
 STEP = 0.1 * MM  # of the mean coil diameter
 MOST_PARALLEL = 8
 S = TypeVar("S", ExtensionSpring, CompressionSpring)
+NOTHING = 1e-3  # of the largest force: less initial tension than this is none
 SAME = 1e-9  # margins this close to what is asked for reach it
 
 
@@ -89,7 +90,9 @@ class Winding:
         """Why no spring can do it; empty when one can."""
         if self.feasible:
             return ""
-        short = ", ".join(f"{name} {value:.3g}" for name, value in self.margins.items() if value < 1 - SAME)
+        short = ", ".join(
+            f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.margins.items() if value < 1 - SAME
+        )
         s = self.spring
         nearest = f"d {s.d / MM:.3g} mm, D {s.D / MM:.4g} mm, {s.n:.3g} coils of {s.wire.name}"
         many = "one spring" if self.count == 1 else f"{self.count} springs side by side"
@@ -119,7 +122,8 @@ def extension(
     limits, envelope = limits or Limits(), envelope or Envelope()
 
     def candidates(coils: Helical) -> tuple[ExtensionSpring, dict[str, Array]]:
-        stress = np.minimum(limits.initial_stress(coils.index, coils.strength), coils.stress(need.least))
+        least = need.least if need.least > NOTHING * need.most else 0.0
+        stress = np.minimum(limits.initial_stress(coils.index, coils.strength), coils.stress(least))
         tension = coils.force_at(stress)
         # loops may be drawn out until the line is the one that is wanted
         hook = np.maximum(LOOP * coils.inner, (free + tension / need.rate - (coils.n + 1) * coils.d) / 2)

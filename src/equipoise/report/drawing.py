@@ -1,4 +1,4 @@
-"""Technical drawings: lines, circles and texts on a sheet, in mm, x to the right and y upwards; written as SVG or DXF."""
+"""Technical drawings: lines and texts on a sheet, in mm, x to the right and y upwards; written as SVG or DXF."""
 
 from __future__ import annotations
 
@@ -96,8 +96,11 @@ class Drawing:
             at = ((start[0] + stop[0]) / 2, base + 1.0) if wide else (last[0] + 1, base - NORMAL / 3)
             self.label(at, text, anchor="middle" if wide else "start")
         else:
-            at = (base - 1.0, (start[1] + stop[1]) / 2) if wide else (base - 1.0, last[1] + 1)
-            self.labels.append(Label(at, text, NORMAL, "middle" if wide else "start", upwards=True))
+            middle = (start[1] + stop[1]) / 2
+            if wide:
+                self.labels.append(Label((base - 1.0, middle), text, NORMAL, "middle", upwards=True))
+            else:
+                self.label((base + 1.5, middle - NORMAL / 3), text)
 
     def _arrow(self, tip: Pair, way: Pair) -> None:
         x, y = tip
@@ -132,10 +135,11 @@ class Drawing:
 
     def dxf(self) -> str:
         """The drawing as a DXF file in mm; needs ezdxf."""
-        import ezdxf
         from ezdxf.enums import TextEntityAlignment as Align
+        from ezdxf.filemanagement import new
+        from ezdxf.units import MM
 
-        document = ezdxf.new("R2010", units=ezdxf.units.MM)
+        document = new("R2010", units=MM)
         document.layers.add("thin", lineweight=18)
         document.layers.add("thick", lineweight=35)
         document.layers.add("text", lineweight=18)

@@ -36,8 +36,11 @@ def sheet(bill: Bill) -> Drawing:
             for line, text in enumerate(_wrapped(f"cannot be made: {item.ways[0].reason}", 95)):
                 drawing.label((EDGE + 4, y - 14 - 4.5 * line), text)
             continue
-        scale = draw_spring(drawing, way.winding.spring, (EDGE + 14, y - 38))
-        drawing.label((EDGE + 4, y - PANEL + 4), f"scale {scale}", SMALL)
+        s = way.winding.spring
+        scale = draw_spring(drawing, s, (EDGE + 14, y - 38))
+        drawing.label(
+            (EDGE + 4, y - PANEL + 4), f"scale {scale}; wire d = {s.d / MM:.3g}, {s.n:.4g} active coils", SMALL
+        )
         for line, (what, value) in enumerate(_data(bill, item, way)):
             drawing.label((DATA, y - 6 - 4.3 * line), what, NORMAL)
             drawing.label((WIDTH - EDGE - 4, y - 6 - 4.3 * line), value, NORMAL, "end")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi
+from typing import Any
 
 import numpy as np
 
@@ -10,12 +12,14 @@ from ..arrays import Array
 from ..hardware.compression import CompressionSpring
 from ..hardware.extension import LOOP, ExtensionSpring
 from ..hardware.wire import MM
-from .drawing import HIDDEN, THICK, THIN, Drawing, Pair
+from .drawing import HIDDEN, THICK, THIN, Drawing, Line, Pair
 
+Turns = Callable[[Any], Any]  # turns of the wire -> mm along the axis
 LONG, HIGH = 128.0, 30.0  # [mm] on the sheet
 ENDS = 5  # coils that are drawn at each end of one that is shortened
 MOST = 40  # coils that are drawn one by one
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05)
+STEEL = "#3A4756"
 AXIS = (6.0, 1.2, 0.6, 1.2)
 
 
@@ -30,7 +34,7 @@ def draw_spring(drawing: Drawing, spring: ExtensionSpring | CompressionSpring, a
     if coils > MOST or scale < 0.5:
         # shortened: a view of both ends
         drawn = min(float(coils), 2.0 * ENDS)
-        pitch = _pitch(spring, drawn, shortened=True)
+        pitch = _pitch(spring)
         short = ends + (drawn + 4) * pitch / MM
         fits = [s for s in SCALES if s * short <= LONG and s * spring.outer / MM <= HIGH]
         scale = fits[0] if fits else SCALES[-1]
@@ -42,7 +46,7 @@ def draw_spring(drawing: Drawing, spring: ExtensionSpring | CompressionSpring, a
     return f"{ratio}, shortened" if drawn < coils else ratio
 
 
-def _pitch(spring: ExtensionSpring | CompressionSpring, coils: float, *, shortened: bool) -> float:
+def _pitch(spring: ExtensionSpring | CompressionSpring) -> float:
     """[m] from coil to coil in the middle."""
     if isinstance(spring, ExtensionSpring):
         return spring.d
@@ -65,19 +69,21 @@ def _view(
     total = length * scale
     left, right = x0 + hook, x0 + total - hook
     parts = [(left, drawn / 2, 1), (right, drawn / 2, -1)] if shortened else [(left, drawn, 1)]
+    backs: list[Line] = []
+    fronts: list[Line] = []
     for start, coils, way in parts:
-        x = _advance(spring, coils, size, whole=not shortened, body=right - left)
+        x = _advance(spring, coils, size, whole=not shortened)
         for n in range(max(1, int(np.ceil(2 * coils - 1e-9)))):
             # one half turn after the other: in front from below to above, then behind
             turns = np.linspace(n / 2, min((n + 1) / 2, coils), 13)
             points = [(start + way * float(x(t)), y0 - D / 2 * float(np.cos(2 * pi * t))) for t in turns]
             front = n % 2 == 0
-            drawing.line(*points, width=max(d, THIN), colour=STEEL if front else HIDDEN)
-    drawing.lines.sort(key=lambda line: line.colour != HIDDEN)  # what is behind comes first
+            (fronts if front else backs).append(Line(tuple(points), max(d, THIN), STEEL if front else HIDDEN))
+    drawing.lines += [*backs, *fronts]  # what is in front is drawn last
     if shortened:
         for side in (-1, 1):
-            a = left + _advance(spring, drawn / 2, size, whole=False, body=0)(drawn / 2)
-            b = right - _advance(spring, drawn / 2, size, whole=False, body=0)(drawn / 2)
+            a = left + _advance(spring, drawn / 2, size, whole=False)(drawn / 2)
+            b = right - _advance(spring, drawn / 2, size, whole=False)(drawn / 2)
             y = y0 + side * (D + d) / 2
             drawing.line((float(a), y), (float(b), y), pattern=AXIS, colour=HIDDEN)
     if isinstance(spring, ExtensionSpring):
@@ -88,23 +94,19 @@ def _view(
     drawing.dimension((x0, y0 + outer / 2), (x0 + total, y0 + outer / 2), 9, f"L0 = {_mm(spring.free_length)}")
     if isinstance(spring, ExtensionSpring):
         drawing.dimension((left, y0 - outer / 2), (right, y0 - outer / 2), -7, f"LK = {_mm(spring.body)}")
-        drawing.dimension((right, y0 - outer / 2), (x0 + total, y0 - outer / 2), -7, f"LH = {_mm(spring.hook)}")
+        drawing.dimension((right, y0 - outer / 2), (x0 + total, y0 - outer / 2), -13, f"LH = {_mm(spring.hook)}")
     middle = right if isinstance(spring, ExtensionSpring) else x0 + total
     edge = x0 + total + 6
     a, b = (middle, y0 - outer / 2), (middle, y0 + outer / 2)
     drawing.dimension(a, b, edge - middle + 4, f"De = {_mm(spring.outer)}")
-    drawing.label((x0, y0 - outer / 2 - (16 if hook else 7)), f"wire d = {_mm(spring.d)}, {spring.n:.4g} active coils")
 
 
-STEEL = "#3A4756"
-
-
-def _advance(spring: ExtensionSpring | CompressionSpring, coils: float, size: float, *, whole: bool, body: float):
+def _advance(spring: ExtensionSpring | CompressionSpring, coils: float, size: float, *, whole: bool) -> Turns:
     """Turns -> mm along the axis, of the wire's middle."""
     d = spring.d * size
     if isinstance(spring, ExtensionSpring):
         return lambda t: d / 2 + t * d
-    pitch = _pitch(spring, coils, shortened=not whole) * size
+    pitch = _pitch(spring) * size
     # the first coil is closed, and of a whole spring the last one too
     last = coils - 1 if whole else np.inf
     turns: Array = np.array([0.0, 1.0, min(last, 1e6), 1e6])
