@@ -9,9 +9,9 @@ exist. Nothing cheaper than the bound exists, so the first set that is possible 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from time import monotonic
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -65,6 +65,23 @@ class Choice:
     def proven(self) -> bool:
         """Whether no other set costs less."""
         return self.gap <= 1e-9
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of ``equipoise stock --json``, without the balance."""
+        return {
+            "goal": self.goal,
+            "cost": self.cost,
+            "bound": self.bound,
+            "gap": self.gap,
+            "proven": self.proven,
+            "settled": self.settled,
+            "unsettled": self.unsettled,
+            "seconds": self.seconds,
+            "springs": [
+                {"name": spring.name, "p_a": list(spring.p_a), "p_b": list(spring.p_b), "stock": asdict(stock)}
+                for spring, stock in zip(self.mechanism.springs, self.stock, strict=True)
+            ],
+        }
 
 
 def choose(

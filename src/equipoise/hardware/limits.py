@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
-from ..errors import Fault, InputError
+import numpy as np
+
+from ..errors import Fault, InputError, nearest
 from .wire import Quantity
 
 
@@ -52,10 +56,30 @@ class Limits:
                 if not least <= one < float("inf"):
                     raise InputError(Fault(("limits", field.name), f"must be more than 0 and finite, found {one:g}"))
 
+    @staticmethod
+    def changed(values: Mapping[str, str]) -> Limits:
+        """The defaults with some numbers replaced, as typed; ``index`` is LOW:HIGH.
+
+        Raises:
+            InputError: an unknown name, or not a number.
+        """
+        names = tuple(field.name for field in fields(Limits))
+        found: dict[str, Any] = {}
+        for name, text in values.items():
+            if name not in names:
+                raise InputError(Fault(("limits",), f"unknown limit {nearest(name, names)}", names))
+            numbers: list[float] = []
+            try:
+                numbers += map(float, text.split(":"))
+            except ValueError:
+                numbers.clear()
+            if len(numbers) != (2 if name == "index" else 1):
+                raise InputError(Fault(("limits", name), f"expected a number (index: LOW:HIGH), found '{text}'"))
+            found[name] = (numbers[0], numbers[1]) if name == "index" else numbers[0]
+        return Limits(**found)
+
     def initial_stress(self, w: Quantity, rm: Quantity) -> Quantity:
         """Greatest initial torsional stress [Pa] of an extension spring of index `w`."""
-        import numpy as np
-
         return np.maximum(self.initial - self.initial_slope * w, 0.0) * rm
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Fault, InputError, nearest
+from ..io.files import read_text, write_text
 from ..units import SI_UNITS, to_si
 
 COLUMNS = {
@@ -105,8 +106,6 @@ def write_catalogue(catalogue: Iterable[Stock], path: str | Path) -> None:
         pyarrow, parquet = _arrow()
         parquet.write_table(pyarrow.table(table), path)
         return
-    from ..io.files import write_text
-
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
@@ -120,12 +119,7 @@ def _header(name: str) -> str:
 
 
 def _csv(path: Path) -> tuple[list[str], list[list[Any]]]:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(Fault((), "is not UTF-8 text", file=str(path))) from None
-    if "\0" in text:
-        raise InputError(Fault((), "is not text", file=str(path)))
+    text = read_text(path)
     first = text.partition("\n")[0]
     comma = max(",;\t", key=first.count)
     rows = [row for row in csv.reader(StringIO(text), delimiter=comma) if any(cell.strip() for cell in row)]
