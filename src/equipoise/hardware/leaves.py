@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..balance import largest_share
 from ..energy.peak import climb
-from ..energy.potential import Potential
+from ..energy.potential import lumped_masses
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from .stretch import Stretch
@@ -40,30 +40,30 @@ class Torques:
 
     def __init__(self, mechanism: Mechanism, laws: Sequence[Stretch]) -> None:
         self.tree = Tree.of(mechanism)
-        self._gravity = Potential(mechanism)
+        self._g = np.array(mechanism.gravity)
+        self._masses = [(self.tree.index[body], m, p) for body, m, p in lumped_masses(mechanism) if m]
         self._springs = [
             (s.stiffness, self.tree.index[s.body_a], np.array(s.p_a), self.tree.index[s.body_b], np.array(s.p_b), law)
             for s, law in zip(mechanism.springs, laws, strict=True)
         ]
 
-    def gravity(self, q: Array) -> Array:
-        """(N, n) holding torque against gravity alone [N m or N]."""
-        return self._gravity(q).gravity_torque
-
-    def springs(self, q: Array) -> Array:
-        """(N, springs, n) torque of each spring [N m or N]."""
+    def __call__(self, q: Array) -> tuple[Array, Array]:
+        """(N, n) torque against gravity and (N, springs, n) of each spring [N m or N]."""
         poses = self.tree.poses(q)
         velocities = self.tree.velocities(q, poses)
-        found = np.zeros((len(q), len(self._springs), self.tree.n))
+        gravity = np.zeros_like(q)
+        for body, mass, p in self._masses:
+            gravity -= mass * np.einsum("i,nij->nj", self._g, velocities.point(poses, body, p))
+        springs = np.zeros((len(q), len(self._springs), self.tree.n))
         for i, (k, A, p_a, B, p_b, law) in enumerate(self._springs):
             d = poses.point(B, p_b) - poses.point(A, p_a)
             # in A's frame: seen from there only B moves
             stretch, gradient = law(np.einsum("nji,nj->ni", poses.R[:, A], d))
             rate = velocities.point(poses, B, p_b) - velocities.point(poses, A, p_a)
-            turning = np.cross(velocities.w[:, A], d[:, :, None], axis=1)
-            local = np.einsum("nji,njk->nik", poses.R[:, A], rate - turning)
-            found[:, i] = k * np.einsum("n,ni,nij->nj", stretch, gradient, local)
-        return found
+            rate -= np.cross(velocities.w[:, A], d[:, :, None], axis=1)
+            pull = np.einsum("nij,nj->ni", poses.R[:, A], k * stretch[:, None] * gradient)
+            springs[:, i] = np.einsum("ni,nij->nj", pull, rate)
+        return gravity, springs
 
 
 def leaves(
@@ -85,7 +85,7 @@ def leaves(
     held = np.zeros(len(mechanism.springs)) if friction is None else np.asarray(friction, float)
 
     def quantities(q: Array) -> Array:
-        gravity, springs = torques.gravity(q), torques.springs(q)
+        gravity, springs = torques(q)
         band = np.einsum("s,nsj->nj", held, np.abs(springs))
         return np.hstack([np.abs(gravity), np.abs(gravity + springs.sum(axis=1)), band])
 

@@ -27,6 +27,7 @@ class Limits:
         index: least and greatest spring index w = D/d.
         coils_extension, coils_compression: least number of active coils.
         free_length: [m] greatest of a compression spring.
+        slenderness: greatest free length of a compression spring over its coil diameter, guided in a case.
         safety: static margin that is asked for.
         fatigue: Goodman margin that is asked for; 0 asks for none.
     """
@@ -45,6 +46,7 @@ class Limits:
     coils_extension: float = 3.0
     coils_compression: float = 2.0
     free_length: float = 0.630
+    slenderness: float = 20.0
     safety: float = 1.0
     fatigue: float = 0.0
 
@@ -98,6 +100,7 @@ SOURCES = {
     "coils_extension": "EN 13906-2, table 1",
     "coils_compression": "EN 13906-1, table 1",
     "free_length": "EN 13906-1, table 1",
+    "slenderness": "assumed: what can be wound straight and guided; EN 13906-1 has no limit for guided springs",
     "safety": "the user's choice",
     "fatigue": "the user's choice",
 }

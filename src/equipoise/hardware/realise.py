@@ -22,7 +22,7 @@ from math import inf
 import numpy as np
 
 from ..arrays import Array
-from ..balance import Balance, check
+from ..balance import Balance
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..spring import Spring
@@ -130,8 +130,7 @@ def _direct(balance: Balance, i: int, need: Need, options: Options, pushes: str)
         return made
     if abs(free - spring.free_length) < 1e-12:
         return _ideal(balance, made)
-    judged = check(_with(balance.mechanism, i, replace(spring, free_length=free)))
-    return replace(made, residual=judged.residual.max, share=judged.relative)
+    return _judged(balance.mechanism, i, made)
 
 
 def _case(balance: Balance, i: int, need: Need, options: Options, pushes: str) -> Realisation:
@@ -163,21 +162,25 @@ def _cable(
     balance: Balance, i: int, need: Need, options: Options, pushes: str, kind: str, radius: float
 ) -> Realisation:
     mechanism, spring = balance.mechanism, balance.mechanism.springs[i]
+    d = _seen_from_a(mechanism, spring)
+    law = best_pulley(mechanism, i, d, radius)
+    stretch, _ = law(d)
+    least, most = (spring.stiffness * float(x) for x in (stretch.min(), stretch.max()))
+    need = Need(need.rate, min(need.least, max(least, 0.0)), max(need.most, most))
     winding = side_by_side(
         lambda part: extension(part, options.wires, options.limits, options.envelope), need, options.most
     )
-    d = _seen_from_a(mechanism, spring)
-    law = best_pulley(mechanism, i, d, radius)
     reason = pushes or winding.reason
     if not reason and radius and (gap := float(beyond(law, d).min())) <= 0:
         reason = f"the cable's end comes {-gap / MM:.1f} mm inside the pulley of {radius / MM:g} mm radius"
+    if not reason and stretch.min() < -LEAST_FREE:
+        reason = f"the cable goes slack by {-stretch.min() / MM:.1f} mm"
     made = Realisation(kind, winding, reason, law, options.friction[kind])
     if not made.works:
         return made
     if not radius:
         return _ideal(balance, made)
-    judged = leaves(mechanism, [law if j == i else Straight(s.free_length) for j, s in enumerate(mechanism.springs)])
-    return replace(made, residual=judged.residual, share=judged.share)
+    return _judged(mechanism, i, made)
 
 
 def best_pulley(mechanism: Mechanism, i: int, d: Array, radius: float) -> Pulley:
@@ -198,10 +201,10 @@ def best_pulley(mechanism: Mechanism, i: int, d: Array, radius: float) -> Pulley
     q = sample(Tree.of(mechanism), mechanism.workspace.samples)
     laws: list[Stretch] = [Straight(s.free_length) for s in mechanism.springs]
     laws[i] = law
-    torques = Torques(mechanism, laws)
-    left = torques.gravity(q) + torques.springs(q).sum(axis=1)
+    gravity, springs = Torques(mechanism, laws)(q)
     laws[i] = replace(law, preload=law.preload + 1.0)
-    per_metre = Torques(mechanism, laws).springs(q)[:, i] - torques.springs(q)[:, i]
+    per_metre = Torques(mechanism, laws)(q)[1][:, i] - springs[:, i]
+    left = gravity + springs.sum(axis=1)
     size = float((per_metre**2).sum())
     return replace(law, preload=law.preload - float((left * per_metre).sum()) / size) if size else law
 
@@ -227,8 +230,11 @@ def _too_near(shortest: float, options: Options) -> str:
     return f"{found}, the two joints of a case need {options.ends / MM:g} mm"
 
 
-def _with(mechanism: Mechanism, i: int, spring: Spring) -> Mechanism:
-    return mechanism.with_springs(spring if j == i else s for j, s in enumerate(mechanism.springs))
+def _judged(mechanism: Mechanism, i: int, made: Realisation) -> Realisation:
+    """With what it leaves when spring `i` is made so and the others are ideal."""
+    laws = [made.stretch if j == i else Straight(spring.free_length) for j, spring in enumerate(mechanism.springs)]
+    judged = leaves(mechanism, laws)
+    return replace(made, residual=judged.residual, share=judged.share)
 
 
 def rank(made: Realisation) -> tuple[bool, float, float]:

@@ -160,6 +160,7 @@ def compression(
             fatigue=spring.fatigue_margin(need.least, need.most, limits) if limits.fatigue else None,
             length=envelope.length / length,
             free_length=limits.free_length / length,
+            slenderness=limits.slenderness * coils.D / length,
         )
 
     return _lightest([candidates(coils) for coils in _grid(need.rate, wires, limits, envelope)], None)
