@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array, Booleans
 from ..errors import Fault, InputError
 from ..validate import whole_number
-from .compression import CompressionSpring
+from .compression import CompressionSpring, least_free_length
 from .extension import LOOP, ExtensionSpring
 from .limits import Limits
 from .stock import Catalogue, Stock
@@ -14,7 +15,7 @@ from .wire import MM, WIRES
 
 DIAMETERS = (0.5, 0.63, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.3)  # [mm]
 INDICES = (6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0)
-COILS = tuple(range(10, 180, 2))
+COILS = tuple(float(n) for n in range(10, 180, 2))
 LONGEST = 0.6  # [m] unloaded
 TENSION = 0.5  # of the initial stress that may be wound in
 PRICE_EACH, PRICE_PER_KG = 1.5, 40.0  # of an invented currency
@@ -42,31 +43,32 @@ def made_up_catalogue(count: int = 2000, seed: int = 0) -> Catalogue:
 
 
 def _extension(share: float) -> list[Stock]:
-    limits, found = Limits(), []
-    for d, D, n in _sizes():
-        bare = ExtensionSpring(WIRES["DH"], d, D, n)
-        stress = share * float(limits.initial_stress(bare.index, bare.strength))
-        s = ExtensionSpring(WIRES["DH"], d, D, n, stress, LOOP * bare.inner)
-        unit = min(float(s.static_margin(1.0, limits)), float(s.hook_margin(1.0, limits)))
-        found.append(_row("extension", s, float(s.free_length), unit, float(s.initial_tension)))
-    return [one for one in found if one.free_length <= LONGEST and one.max_force > one.initial_tension]
+    limits = Limits()
+    bare = ExtensionSpring(WIRES["DH"], *_sizes())
+    stress = share * limits.initial_stress(bare.index, bare.strength)
+    s = ExtensionSpring(bare.wire, bare.d, bare.D, bare.n, stress, LOOP * bare.inner)
+    force = np.minimum(s.static_margin(1.0, limits), s.hook_margin(1.0, limits))
+    good = (s.free_length <= LONGEST) & (force > s.initial_tension)
+    return _rows("extension", s, force, s.initial_tension, good)
 
 
 def _compression() -> list[Stock]:
-    limits, found = Limits(), []
-    for d, D, n in _sizes():
-        bare = CompressionSpring(WIRES["DH"], d, D, n)
-        force = float(limits.compression * bare.strength / bare.stress(1.0))
-        length = float(np.ceil((force / bare.rate + bare.solid_length + bare.gaps) / MM)) * MM
-        s = CompressionSpring(WIRES["DH"], d, D, n, length)
-        found.append(_row("compression", s, length, float(s.stroke * s.rate), 0.0))
-    return [one for one in found if one.free_length <= LONGEST]
+    limits = Limits()
+    bare = CompressionSpring(WIRES["DH"], *_sizes())
+    stroke = limits.compression * bare.strength / bare.stress(bare.rate)
+    s = CompressionSpring(bare.wire, bare.d, bare.D, bare.n, least_free_length(bare, stroke))
+    good = (s.free_length <= LONGEST) & (s.free_length <= limits.slenderness * s.D)
+    return _rows("compression", s, s.stroke * s.rate, np.zeros_like(s.d), good)
 
 
-def _sizes() -> list[tuple[float, float, float]]:
-    return [(d * MM, round(w * d, 1) * MM, float(n)) for d in DIAMETERS for w in INDICES for n in COILS]
+def _sizes() -> tuple[Array, Array, Array]:
+    d, w, n = (x.ravel() for x in np.meshgrid(DIAMETERS, INDICES, COILS, indexing="ij"))
+    return d * MM, np.round(w * d, 1) * MM, n
 
 
-def _row(kind: str, s: ExtensionSpring | CompressionSpring, length: float, force: float, tension: float) -> Stock:
-    price = round(PRICE_EACH + PRICE_PER_KG * s.mass, 2)
-    return Stock("", kind, s.rate, force, length, s.outer, s.d, s.mass, tension, price)
+def _rows(
+    kind: str, s: ExtensionSpring | CompressionSpring, force: Array, tension: Array, good: Booleans
+) -> list[Stock]:
+    price = np.round(PRICE_EACH + PRICE_PER_KG * s.mass, 2)
+    columns = (s.rate, force, s.free_length, s.outer, s.d, s.mass, tension, price)
+    return [Stock("", kind, *(float(x) for x in row)) for row in np.stack(columns, axis=1)[good]]

@@ -130,6 +130,10 @@ def _parquet(path: Path) -> tuple[list[str], list[list[Any]]]:
     pyarrow, parquet = _arrow()
     try:
         table = parquet.read_table(path)
+    except OSError as error:
+        raise InputError(
+            Fault((), f"cannot be read: {(error.strerror or str(error)).lower()}", file=str(path))
+        ) from None
     except pyarrow.ArrowException as error:
         raise InputError(Fault((), f"is no Parquet file: {str(error).splitlines()[0]}", file=str(path))) from None
     return table.column_names, [list(row) for row in zip(*table.to_pydict().values(), strict=True)]
