@@ -54,7 +54,7 @@ def brute_force(catalogue: tuple[Stock, ...], travel: Travel) -> float:
         if mass >= best:
             continue
         good = np.ones(STEPS, bool)
-        found = distances(*(one.rate for one in three), apart)
+        found = distances(three[0].rate, three[1].rate, three[2].rate, apart)
         for (a, b), (a0, b0), one, links in zip(found, now, three, (R2, R2 + R3, R2 + R3), strict=True):
             for x, x0 in ((a, a0), (b, b0)):
                 good &= (x >= travel.low * x0) & (x <= travel.high * x0)

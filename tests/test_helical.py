@@ -157,8 +157,8 @@ def test_goodman(top: float, share: float) -> None:
 def test_goodman_passes_through_zimmerlis_point() -> None:
     limits, s = Limits(), golden()
     low, high = (limits.mean - limits.amplitude, limits.mean + limits.amplitude)
-    forces = [s.force_at(x) / s.correction for x in (low, high)]
-    assert s.fatigue_margin(*forces, limits) == pytest.approx(1, rel=1e-12)
+    least, most = (s.force_at(x) / s.correction for x in (low, high))
+    assert s.fatigue_margin(least, most, limits) == pytest.approx(1, rel=1e-12)
 
 
 def test_every_limit_has_a_source_and_can_be_replaced() -> None:

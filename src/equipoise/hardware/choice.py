@@ -25,7 +25,7 @@ from .stock import Catalogue, Stock
 
 Goal = Literal["mass", "price"]
 GOALS: tuple[Goal, ...] = ("mass", "price")
-CELLS = 4  # of each distance, to begin with
+CELLS = 3  # of each distance, to begin with
 ROUNDS = 60  # refinements of one set of springs before it counts as unsettled
 WORST = 12  # poses at which each spring's largest force is looked at, to begin with
 SPREAD = 200  # they are every 200th part of all poses apart, from where it is longest
