@@ -63,7 +63,8 @@ def _compression() -> list[Stock]:
 
 def _sizes() -> tuple[Array, Array, Array]:
     d, w, n = (x.ravel() for x in np.meshgrid(DIAMETERS, INDICES, COILS, indexing="ij"))
-    return d * MM, np.round(w * d, 1) * MM, n
+    D: Array = np.round(w * d, 1).astype(np.float64)
+    return d * MM, D * MM, n
 
 
 def _rows(

@@ -1,7 +1,7 @@
 """Attachments that move outwards and inwards, and what that does to the energy.
 
 Each attachment of a spring may move along its ray, from the nearest joint through the attachment. With stiffness k and
-distances a and b along the two rays the energy of a spring of zero free length is, up to a constant,
+distances a and b along the two rays the energy of a spring of zero free length is, up to a constant, ::
 
     k |t|^2 / 2  -  k a (t . e_a)  +  k b (t . e_b)  -  k a b (e_a . e_b)
 

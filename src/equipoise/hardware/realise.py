@@ -1,14 +1,14 @@
 """How the springs of a design can be made: five ways to install a helical spring, and what each leaves unbalanced.
 
-    direct      an extension spring between the attachments; its initial tension F_0 makes up for its length L_0, and
-                what it does not make up for, L_0 - F_0/k, is left as free length
-    case        an extension spring in a case that turns about A and reaches behind it: no free length
-                (Simionescu, Ciupitu and Ionita 2015, Fig. 8b)
-    telescope   a compression spring in a telescopic case that turns about A, pressed by a rod from B: no free length
-                (the same, Fig. 8a)
-    pulley      an extension spring elsewhere on A's body, pulled by a cable that leaves over a pulley at A: no free
-                length, but the cable's length over the pulley is not quite the distance from A to B
-    eyelet      the same with a smooth hole instead of the pulley: no error of length, more friction
+* direct: an extension spring between the attachments; its initial tension F_0 makes up for its length L_0, and what it
+  does not make up for, L_0 - F_0/k, is left as free length
+* case: an extension spring in a case that turns about A and reaches behind it: no free length (Simionescu, Ciupitu and
+  Ionita 2015, Fig. 8b)
+* telescope: a compression spring in a telescopic case that turns about A, pressed by a rod from B: no free length (the
+  same, Fig. 8a)
+* pulley: an extension spring elsewhere on A's body, pulled by a cable that leaves over a pulley at A: no free length,
+  but the cable's length over the pulley is not quite the distance from A to B
+* eyelet: the same with a smooth hole instead of the pulley: no error of length, more friction
 
 Residuals are those of the mechanism with this one spring so installed and the others ideal.
 """

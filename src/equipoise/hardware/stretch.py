@@ -1,7 +1,7 @@
 """How far a spring is stretched, as it is really installed: a function of where its far end is.
 
 Every law takes the vector d (N, 3) [m] from attachment A to attachment B, in the frame of A's body, and gives the
-stretch (N,) [m] and its gradient (N, 3) by d. The energy is k/2 stretch^2; the law of zero free length is |d|.
+stretch (N,) [m] and its gradient (N, 3) by d. The energy is k/2 stretch^2; that of zero free length is d's length.
 """
 
 from __future__ import annotations
