@@ -131,6 +131,10 @@ def test_direct_leaves_the_free_length_that_initial_tension_does_not_make_up_for
     assert spring.free_length <= balance.use[0].min_length * (1 + 1e-9)
     assert 0 < spring.left_over < spring.free_length
     assert direct.share == pytest.approx(eq.check(pendulum(-90, 45, free=spring.left_over)).relative, rel=1e-3)
+    # in use it is as long as its attachments are apart
+    made = bill(balance, Options(envelope=ROOM), "direct").to_dict()["springs"][0]
+    use = balance.use[0]
+    assert made["realisations"][0]["length_in_use"] == pytest.approx([use.min_length, use.max_length], rel=1e-6)
 
 
 def test_attachments_that_meet_leave_only_a_cable() -> None:

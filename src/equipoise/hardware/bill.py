@@ -22,6 +22,7 @@ from .leaves import Leaves, leaves
 from .limits import SOURCES, Limits
 from .realise import KINDS, Options, Realisation, rank, realisations
 from .stretch import Straight
+from .winding import NOTHING
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,14 @@ class Item:
         """The best that works."""
         return self.ways[0] if self.ways[0].works else None
 
-    @property
-    def least(self) -> float:
-        """Least force over the workspace [N]."""
-        return self.spring.stiffness * max(self.use.min_length - self.spring.free_length, 0.0)
+    def forces(self, way: Realisation) -> tuple[float, float]:
+        """Least and largest force of each of the springs side by side, made in this way [N]."""
+        # a free length that is left makes the spring pull less
+        free = way.stretch.free_length if isinstance(way.stretch, Straight) else self.spring.free_length
+        k = self.spring.stiffness / way.winding.count
+        most = k * (self.use.max_length - free)
+        least = k * max(self.use.min_length - free, 0.0)
+        return (least if least > NOTHING * most else 0.0), most
 
 
 @dataclass(frozen=True)
@@ -145,7 +150,7 @@ def _item(item: Item, limits: Limits) -> dict[str, Any]:
 def way_dict(item: Item, way: Realisation, limits: Limits) -> dict[str, Any]:
     """All about one realisation; forces, sizes and mass are of each of the springs side by side."""
     s, count = way.winding.spring, way.winding.count
-    least, most = item.least / count, float(item.use.max_force) / count
+    least, most = item.forces(way)
     extension = isinstance(s, ExtensionSpring)
     return {
         "kind": way.kind,

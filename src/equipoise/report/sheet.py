@@ -48,8 +48,8 @@ def sheet(bill: Bill) -> Drawing:
 
 
 def _data(bill: Bill, item: Item, way: Realisation) -> Iterator[tuple[str, str]]:
-    s, count, limits = way.winding.spring, way.winding.count, bill.options.limits
-    least, most = item.least / count, item.use.max_force / count
+    s, limits = way.winding.spring, bill.options.limits
+    least, most = item.forces(way)
     yield "realisation", way.kind
     yield "wire", f"{s.wire.standard} {s.wire.name}, Rm {s.strength / MPA:.0f} MPa"
     yield "d, D, De", f"{s.d / MM:.3g}, {s.D / MM:.4g}, {s.outer / MM:.4g} mm"
@@ -67,10 +67,10 @@ def _data(bill: Bill, item: Item, way: Realisation) -> Iterator[tuple[str, str]]
         "stress, permissible",
         f"{s.stress(most) / MPA:.0f}, {s.stress(most) * s.static_margin(most, limits) / MPA:.0f} MPa",
     )
-    yield "static margin", f"{s.static_margin(most, limits):.3g}"
+    yield "static margin", f"{s.static_margin(most, limits):.2f}"
     if not isinstance(s, CompressionSpring):
-        yield "margin of the loops", f"{s.hook_margin(most, limits):.3g}"
-    yield "fatigue margin (Goodman)", f"{s.fatigue_margin(least, most, limits):.3g}"
+        yield "margin of the loops", f"{s.hook_margin(most, limits):.2f}"
+    yield "fatigue margin (Goodman)", f"{s.fatigue_margin(least, most, limits):.2f}"
     yield "natural frequency", f"{s.frequency:.3g} Hz"
     yield "mass", f"{1000 * s.mass:.4g} g each"
     if way.behind is not None:
