@@ -16,7 +16,8 @@ from typing import Any, Literal
 import numpy as np
 
 from ..arrays import Array
-from ..balance import Balance, check
+from ..balance import Balance
+from ..energy.peak import climb
 from ..errors import Fault, InfeasibleError, InputError, nearest
 from ..mechanism import Mechanism
 from .movable import Movable, Travel
@@ -27,8 +28,6 @@ Goal = Literal["mass", "price"]
 GOALS: tuple[Goal, ...] = ("mass", "price")
 CELLS = 3  # of each distance, to begin with
 ROUNDS = 60  # refinements of one set of springs before it counts as unsettled
-WORST = 12  # poses at which each spring's largest force is looked at, to begin with
-SPREAD = 200  # they are every 200th part of all poses apart, from where it is longest
 OVER = 1e-9  # forces over their limit by this share are rounding
 
 
@@ -163,7 +162,8 @@ def _relaxation(movable: Movable, catalogue: Catalogue, goal: Goal) -> Relaxatio
     ]
     cost = np.array([s.mass if goal == "mass" else s.price for s in catalogue])
     relaxation = Relaxation(movable, rate, force, cost, allowed, edges)
-    relaxation.pulls += _pulls(movable, np.ones_like(movable.low), WORST)
+    for shares in (movable.low, np.ones_like(movable.low), movable.high):
+        relaxation.pulls += _pulls(movable, _longest(movable, shares)[1], shares)
     return relaxation
 
 
@@ -205,19 +205,19 @@ def _nearest(t: Array, e_a: Array, e_b: Array, a: Array, b: Array) -> Array:
     return np.where(inner, np.minimum(best, length(np.where(inner, x, 0.0), np.where(inner, y, 0.0))), best)
 
 
-def _pulls(movable: Movable, shares: Array, count: int) -> list[Pull]:
-    """The forces of every spring at the sampled poses where it is longest."""
-    t, e_a, e_b = movable.directions(movable.poses)
-    a, b = shares.T * np.array([[ray.length for ray in pair] for pair in movable.rays]).T
-    d = t - a[:, None] * e_a + b[:, None] * e_b
-    length = np.linalg.norm(d, axis=2)
+def _longest(movable: Movable, shares: Array) -> tuple[Array, Array]:
+    """(springs,) [m] how long each spring gets with its attachments there, and (springs, n) where."""
+    return climb(movable.tree, lambda q: np.linalg.norm(movable.reach(q, shares), axis=2), movable.poses)
+
+
+def _pulls(movable: Movable, q: Array, shares: Array) -> list[Pull]:
+    """The force of every spring at its own pose, q (springs, n), in the direction that it has there."""
+    t, e_a, e_b = movable.directions(q)
+    d = movable.reach(q, shares)
     found = []
-    for i in range(len(a)):
-        for n in (
-            np.argsort(-length[:, i])[:: max(1, len(d) // 200)][:count] if count > 1 else [int(length[:, i].argmax())]
-        ):
-            u = d[n, i] / length[n, i]
-            found.append(Pull(i, movable.size[i] * np.array([u @ t[n, i], -(u @ e_a[n, i]), u @ e_b[n, i]])))
+    for i, size in enumerate(movable.size):
+        u = d[i, i] / np.linalg.norm(d[i, i])
+        found.append(Pull(i, size * np.array([u @ t[i, i], -(u @ e_a[i, i]), u @ e_b[i, i]])))
     return found
 
 
@@ -233,10 +233,10 @@ def _settle(relaxation: Relaxation, stock: tuple[int, ...], shares: Array) -> Ar
         for guess in (inner.shares, shares):
             found = movable.solve(k, guess)
             if found is not None and movable.inside(found):
-                use = check(movable.moved(relaxation.stiffness[list(stock)], found)).use
-                if all(one.max_force <= most * (1 + OVER) for one, most in zip(use, force, strict=True)):
+                length, q = _longest(movable, found)
+                if (relaxation.stiffness[list(stock)] * length <= force * (1 + OVER)).all():
                     return found
-                relaxation.pulls += _pulls(movable, found, 1)
+                relaxation.pulls += _pulls(movable, q, found)
         if not relaxation.split(inner.shares):
             return None
         shares = inner.shares

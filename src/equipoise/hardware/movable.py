@@ -114,6 +114,12 @@ class Movable:
             e_a[:, i], e_b[:, i] = poses.R[:, A] @ ray_a.direction, poses.R[:, B] @ ray_b.direction
         return t, e_a, e_b
 
+    def reach(self, q: Array, shares: Array) -> Array:
+        """(N, springs, 3) [m] from A to B in the world, with the attachments at relative distances (springs, 2)."""
+        t, e_a, e_b = self.directions(q)
+        a, b = shares.T * np.array([[ray.length for ray in pair] for pair in self.rays]).T
+        return t - a[:, None] * e_a + b[:, None] * e_b
+
     def error(self, k: Array, shares: Array) -> Array:
         """(r,) how far stiffnesses (springs,) and distances (springs, 2), both relative, are from doing the same."""
         a, b = shares.T
