@@ -13,10 +13,28 @@ from io import TextIOWrapper
 import typer
 
 from ..errors import EquipoiseError
-from . import check, demo, design, export, layouts, reproduce  # each registers its commands, in this order of the help
+from . import (  # each registers its commands, in this order of the help
+    check,
+    demo,
+    design,
+    export,
+    hardware,
+    layouts,
+    reproduce,
+)
 from .app import app
 
-__all__ = ["app", "check", "demo", "design", "export", "layouts", "main", "reproduce"]
+__all__ = [
+    "app",
+    "check",
+    "demo",
+    "design",
+    "export",
+    "hardware",
+    "layouts",
+    "main",
+    "reproduce",
+]
 
 
 def main() -> None:

@@ -18,10 +18,23 @@ def length(text: str, option: str) -> float:
     Raises:
         InputError: it is not a length; the message names the option.
     """
-    return _quantity(text, "length", option)
+    return quantity(text, "length", option)
 
 
-def _quantity(text: str, dimension: str, option: str) -> float:
+def positive_length(text: str, option: str) -> float:
+    """A length of more than 0 [m]."""
+    value = length(text, option)
+    if value <= 0:
+        raise InputError(Fault((option,), f"must be more than 0 m, found {text}"))
+    return value
+
+
+def quantity(text: str, dimension: str, option: str) -> float:
+    """A number in the SI unit of `dimension`, or one with its unit.
+
+    Raises:
+        InputError: it has another dimension, or is no number; the message names the option.
+    """
     try:
         return to_si(text, dimension)
     except ValueError as error:
@@ -47,6 +60,21 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
+
+
+def share(text: str, option: str) -> float:
+    """A share from 0 to 1 such as ``0.02`` or ``2%``.
+
+    Raises:
+        InputError: it is not; the message names the option.
+    """
+    try:
+        value = _share(text)
+    except ValueError:
+        value = inf
+    if not 0 <= value <= 1:
+        raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
+    return value
 
 
 def _share(text: str) -> float:
@@ -149,4 +177,4 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None
         case dimension:
-            return _quantity(text, dimension, f"--set {name}")
+            return quantity(text, dimension, f"--set {name}")
