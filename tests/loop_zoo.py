@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
 from math import pi
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from zoo import LIFT, hinge
 
 from equipoise.mechanism import Body, Joint, Loop, Mechanism
+from equipoise.spring import Spring
 
 Y = (0.0, 1.0, 0.0)
 
@@ -85,3 +90,96 @@ def delta_inverse(
             angles.append(np.arctan2(z, x) + np.arccos(c / np.hypot(x, z)))
     t = np.stack(angles, axis=1)
     return (t + pi) % (2 * pi) - pi
+
+
+# More ----------------------------------------------------------------------------------------------------------------
+
+
+def slider_crank(crank: float = 0.2, rod: float = 0.5) -> Mechanism:
+    """The piston, 0.6 kg, slides along x through the crank's axis; a point closure, since the rod's axis is across."""
+    bodies = (Body("crank", 1.0, (crank / 2, 0, 0)), Body("rod", 0.8, (rod / 2, 0, 0.03)), Body("piston", 0.6))
+    joints = (
+        hinge("crank", "world", "crank"),
+        hinge("rod", "crank", "rod", crank),
+        Joint("piston", "prismatic", "world", "piston", axis=(2.0, 0.0, 0.0), range=(0.1, 1.0)),
+    )
+    loop = Loop("rod", (rod, 0.0, 0.0), "piston", (0.0, 0.0, 0.0))
+    spring = Spring("s", "world", (0.1, 0.2, 0.4), "rod", (0.2, 0.0, 0.05), 80.0, 0.1)
+    return Mechanism("slider-crank", bodies, joints, loops=(loop,), springs=(spring,), assembly=(("piston", 0.7),))
+
+
+def spatial_parallelogram() -> Mechanism:
+    """Two equal bars on parallel axes that are level with nothing, a coupler between their ends: hinges, redundant."""
+    axis, side = (0.3, -1.0, 0.2), (0.0, 0.0, 0.15)
+    bodies = (Body("bar", 1.0, (0.2, 0.1, 0)), Body("twin", 0.7, (0.2, 0.1, 0)), Body("coupler", 0.5, (0, 0.02, 0.07)))
+    joints = (
+        Joint("bar", "revolute", "world", "bar", (0.1, 0.2, 0.3), axis=axis, range=(-1.0, 1.0)),
+        Joint("twin", "revolute", "world", "twin", (0.1, 0.2, 0.45), axis=axis),
+        Joint("coupler", "revolute", "bar", "coupler", (0.4, 0.2, 0.1), axis=axis),
+    )
+    loop = Loop("twin", (0.4, 0.2, 0.1), "coupler", side, axis, axis)
+    spring = Spring("s", "world", (0.2, 0.1, 0.6), "coupler", (0.0, 0.0, 0.1), 120.0)
+    return Mechanism("spatial parallelogram", bodies, joints, loops=(loop,), springs=(spring,))
+
+
+def gough_stewart() -> Mechanism:
+    """Six legs of a hinge, a hinge and a strut, on ball joints under the platform; the struts are the actuators.
+
+    `swing` turns about x and `hip` about -y, so that at zero a strut points up.
+    """
+    bodies, joints, loops = [], [], []
+    for i in range(1, 7):
+        foot, head = STEWART_FEET[i - 1], STEWART_HEADS[i - 1]
+        up = (0.0, -pi / 2, 0.0)  # the strut's x axis
+        bodies += [Body(f"yoke {i}"), Body(f"lower {i}", 0.7, (0.15, 0, 0)), Body(f"upper {i}", 0.5, (-0.2, 0, 0))]
+        joints += [
+            Joint(f"strut {i}", "prismatic", f"lower {i}", f"upper {i}", axis=(1.0, 0.0, 0.0), range=(0.45, 0.65)),
+            Joint(f"swing {i}", "revolute", "world", f"yoke {i}", tuple(foot), axis=(1.0, 0.0, 0.0)),
+            Joint(f"hip {i}", "revolute", f"yoke {i}", f"lower {i}", rpy=up, axis=LIFT),
+        ]
+        if i == 1:
+            joints.append(Joint("ball", "spherical", "upper 1", "ball", rpy=(0.0, pi / 2, 0.0)))
+            joints.append(Joint("plate", "fixed", "ball", "platform", tuple(-head)))
+        else:
+            loops.append(Loop(f"upper {i}", (0.0, 0.0, 0.0), "platform", tuple(head)))
+    bodies += [Body("ball"), Body("platform", 4.0, (0.01, 0.02, 0.03))]
+    springs = (Spring("s", "world", (0.0, 0.0, 1.2), "platform", (0.05, 0.0, 0.0), 90.0),)
+    names = tuple(f"strut {i}" for i in range(1, 7))
+    assembly = tuple((name, 0.53) for name in names)
+    return Mechanism("Gough-Stewart platform", tuple(bodies), tuple(joints), loops=tuple(loops), springs=springs,
+                     independent=names, assembly=assembly)  # fmt: skip
+
+
+def _ring(radius: float, half: float, turn: float) -> np.ndarray:
+    angles = np.array([2 * pi / 3 * (i // 2) + turn + half * (-1, 1)[i % 2] for i in range(6)])
+    return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)])
+
+
+STEWART_FEET, STEWART_HEADS = _ring(0.3, 0.2, 0.0), _ring(0.2, 0.8, 0.0)
+
+
+def _examples() -> Any:
+    path = Path(__file__).parents[1] / "examples" / "mechanisms" / "make.py"
+    spec = spec_from_file_location("make_examples", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+EXAMPLES = _examples()
+"""examples/mechanisms/make.py, which builds the example files with loops."""
+
+LOOPED: dict[str, Callable[[], Mechanism]] = {
+    "four-bar": lambda: replace(
+        four_bar(), springs=(Spring("s", "world", (0.1, 0.0, 0.5), "coupler", (0.3, 0.0, 0.1), 150.0),)
+    ),
+    "slider-crank": slider_crank,
+    "parallelogram": spatial_parallelogram,
+    "RSSR": EXAMPLES.rssr,
+    "DELTA": delta,
+    "Gough-Stewart": gough_stewart,
+    "hexapod": EXAMPLES.hexapod,
+}
+"""One of each kind, some of them balanced."""

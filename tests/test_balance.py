@@ -141,7 +141,7 @@ KEYS = {
     "springs": None,
 }
 SPRING_KEYS = {
-    "name", "body_a", "p_a", "body_b", "p_b", "stiffness", "free_length", "max_length", "max_force",
+    "name", "body_a", "p_a", "body_b", "p_b", "stiffness", "free_length", "max_length", "min_length", "max_force",
 }  # fmt: skip
 
 

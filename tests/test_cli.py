@@ -1,8 +1,10 @@
 """The command line as a user or a script meets it: output, exit codes, and nothing half-written."""
 
 import json
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -294,3 +296,87 @@ def test_names_that_would_reach_the_terminal_are_refused(run, tmp_path, name):
     assert code == 2
     assert "cannot be printed" in err or "not" in err
     assert "\x1b" not in err
+
+
+# The DELTA -----------------------------------------------------------------------------------------------------------
+
+DELTA = Path(__file__).parents[1] / "examples" / "mechanisms" / "delta.yaml"
+
+
+def test_methods_know_which_robots_are_deltas(run):
+    rows = {row["method"]: row for row in json.loads(run("methods", DELTA, "--json")[1])}
+    assert rows["delta"]["applies"] is True
+    assert rows["convex"]["applies"] is True
+    assert rows["pseudobase"]["applies"] is False
+    rows = {row["method"]: row for row in json.loads(run("methods", ROBOTS / "ur5.urdf", "--json")[1])}
+    assert rows["delta"]["applies"] is False
+    assert "no loops" in rows["delta"]["reasons"][0]
+
+
+@pytest.mark.slow
+def test_design_delta_full(run, tmp_path):
+    out_file = tmp_path / "balanced.yaml"
+    options = ("--set", "BF=120mm", "--set", "CS=100mm", "--set", "spring_7=1.8kg", "--set", "share_7=60%")
+    code, out, _ = run("design", DELTA, "--method", "delta", *options, "-o", out_file, "--json")
+    assert code == 0
+    answer = json.loads(out)
+    assert answer["balance"]["exact"] is True
+    assert answer["bound"] == 0
+    assert answer["certified_gap"] < 1e-10
+    free = answer["free_parameters"]
+    assert (free["variant"], free["BF"], free["spring_7"], free["share_7"]) == ("full", 0.12, 1.8, 0.6)
+    springs = eq.load(out_file).springs
+    assert len(springs) == 9
+    assert {spring.mass for spring in springs if spring.name.startswith("spring 7")} == {1.8}
+
+
+@pytest.mark.slow
+def test_design_delta_optimum_prints_how_much_better_it_is(run):
+    options = ("--set", "variant=optimum", "--set", "heights=0.5,800mm", "--set", "reach=5cm", "--set", "samples=200")
+    code, out, _ = run("design", DELTA, "--method", "delta", *options, "--json")
+    assert code == 0
+    free = json.loads(out)["free_parameters"]
+    assert free["heights"] == [0.5, 0.8]
+    assert free["reach"] == 0.05
+    assert free["times_better"] == pytest.approx(free["axis_formula_peak"] / free["residual_peak"])
+    assert free["times_better"] > 1
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("variant=half", "unknown value 'half'"),
+        ("BF=3kg", "--set BF"),
+        ("BF=0", "BF: must be more than 0 m"),
+        ("heights=0.8,0.5", "variant 'full' has no such option|must be two lengths|the smaller first"),
+        ("samples=many", "expected a whole number"),
+        ("share_7=a", "expected a share"),
+        ("printed=perhaps", "unknown value"),
+        ("BG=1", "no parameter 'BG'"),
+        ("AV.leg=1", "is one value for the whole mechanism"),
+    ],
+)
+def test_design_delta_refusals(run, setting, message):
+    more = ("--set", "variant=axis") if "heights" in setting else ()
+    code, out, err = run("design", DELTA, "--method", "delta", *more, "--set", setting)
+    assert (code, out) == (2, "")
+    assert re.search(message, err)
+
+
+def test_design_delta_needs_a_delta(run, pendulum):
+    code, out, err = run("design", pendulum(), "--method", "delta")
+    assert (code, out) == (2, "")
+    assert "method 'delta' does not apply to 'one-link arm': it has no loops" in err.replace("\n", " ")
+
+
+def test_check_reports_mobility_and_what_cannot_be_assembled(run, tmp_path):
+    lamp = DELTA.with_name("desk_lamp.yaml")
+    code, out, _ = run("check", lamp, "--json", "--samples", 50)
+    assert code == 0
+    assert json.loads(out)["mobility"] == {"gruebler": -4, "numerical": 2, "redundant": 6}
+    assert json.loads(out)["coordinates"] == ["base", "middle"]
+    broken = tmp_path / "broken.yaml"
+    eq.save(replace(eq.load(lamp), independent=("base",)), broken)
+    code, out, err = run("check", broken)
+    assert (code, out) == (2, "")
+    assert "2 coordinates are independent, found 1: base" in err

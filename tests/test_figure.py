@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from loop_zoo import four_bar
 from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.balance import check
 from equipoise.errors import InputError
 from equipoise.io import files
-from equipoise.kinematics import Tree
+from equipoise.kinematics import Tree, sample
 from equipoise.report import loads, style
 from equipoise.report.arm import window, zigzag
 from equipoise.report.figure import save_figure
@@ -258,3 +259,21 @@ def test_bars_lead_from_joint_to_joint_to_the_payload():
 def test_numbers_are_short():
     shown = [style.number(value) for value in (0.0, 59.34, 0.1738, 1401.4, 2e-5, 3e6)]
     assert shown == ["0", "59.3", "0.174", "1401", "2.0e-05", "3.0e+06"]
+
+
+def test_bars_lead_to_the_ends_of_loops_and_meet_there():
+    tree = Tree.of(four_bar())
+    skeleton = Skeleton.of(four_bar())
+    poses = tree.poses(sample(tree, 5))
+    coupler, rocker = (bar for name in ("coupler", "rocker") for bar in skeleton.bars if bar.body == tree.index[name])
+    assert np.abs(coupler.b.at(poses) - rocker.b.at(poses)).max() < 1e-12
+    assert len(skeleton.joints) == 5  # the loop's two ends are one on the other
+    assert np.isfinite(skeleton.points(poses)).all()
+
+
+def test_a_bracket_starts_at_the_nearest_foot_even_where_zero_does_not_close():
+    spring = eq.Spring("s", "world", (0.45, 0.0, 0.2), "rocker", (0.1, 0.0, 0.05), 100.0)
+    skeleton = Skeleton.of(four_bar().with_springs((spring,)))
+    ground, rocker = skeleton.brackets
+    np.testing.assert_allclose(ground.a.p, (0.45, 0.0, 0.0))
+    np.testing.assert_allclose(rocker.a.p, (0.1, 0.0, 0.0), atol=1e-12)

@@ -6,7 +6,7 @@ import pytest
 from equipoise.balance import check
 from equipoise.reproduce import reproduce
 from equipoise.reproduce.simionescu2015 import two_axis_rocker
-from equipoise.synthesis import design
+from equipoise.synthesis.delta import one_per_leg
 from equipoise.synthesis.delta_robot import DeltaRobot
 
 
@@ -41,8 +41,8 @@ def test_the_example(rows):
 def test_the_residual_off_the_axis(reach, residual, unbalanced):
     # PAPERS.md, from random places: the largest of a few hundred; more places find the corners of the box
     found = [
-        design(DeltaRobot().mechanism(), "delta", variant="axis", spring_7=1.8, heights=[0.5, 0.8], reach=reach,
-               samples=400, seed=seed).free_parameters
+        one_per_leg(DeltaRobot().mechanism(), "axis", spring_7=1.8, heights=[0.5, 0.8], reach=reach, samples=400,
+                    seed=seed)[1].numbers
         for seed in range(3)
     ]  # fmt: skip
     assert np.median([one["residual_peak"] for one in found]) == pytest.approx(residual, rel=0.1)

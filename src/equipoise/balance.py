@@ -5,6 +5,7 @@ Everything is computed from the mechanism alone, so that no design method has to
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -54,9 +55,10 @@ class Loads:
 
 @dataclass(frozen=True)
 class SpringUse:
-    """The largest length [m] and force magnitude [N] of a spring over the poses."""
+    """The largest and least length [m] and the largest force magnitude [N] of a spring over the poses."""
 
     max_length: float
+    min_length: float
     max_force: float
 
 
@@ -111,15 +113,7 @@ class Balance:
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
-        shares = [0.0]
-        units = np.array(self.units)
-        for unit in ("rad", "m"):
-            residual, unbalanced = (
-                float(x.max[units == unit].max(initial=0)) for x in (self.residual, self.unbalanced)
-            )
-            if residual > 0:
-                shares.append(residual / unbalanced if unbalanced > 0 else np.inf)
-        return max(shares)
+        return largest_share(self.residual.max, self.unbalanced.max, self.units)
 
     def balanced(self, tolerance: float = EXACT, torque: float | None = None) -> bool:
         """Whether it is exact, or the residual stays within a share of the unbalanced torque, or within `torque`."""
@@ -164,6 +158,7 @@ class Balance:
                     "stiffness": spring.stiffness,
                     "free_length": spring.free_length,
                     "max_length": use.max_length,
+                    "min_length": use.min_length,
                     "max_force": use.max_force,
                 }
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
@@ -222,7 +217,11 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
         use=tuple(
-            SpringUse(float(up), spring.stiffness * max(up - spring.free_length, spring.free_length + minus, 0.0))
+            SpringUse(
+                float(up),
+                -float(minus),
+                spring.stiffness * max(up - spring.free_length, spring.free_length + minus, 0.0),
+            )
             for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
         ),
     )
@@ -240,6 +239,16 @@ def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[Four
         return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
     except NoFourierForm as why:
         return None, str(why)
+
+
+def largest_share(residual: Array, unbalanced: Array, units: Sequence[str]) -> float:
+    """The largest of (n,) residual torques over the largest unbalanced one of the same unit (inf over 0)."""
+    shares = [0.0]
+    for unit in ("rad", "m"):
+        left, whole = (float(x[np.array(units) == unit].max(initial=0)) for x in (residual, unbalanced))
+        if left > 0:
+            shares.append(left / whole if whole > 0 else np.inf)
+    return max(shares)
 
 
 def _certificate(series: FourierEnergy | None, reason: str | None, samples: int) -> Certificate:

@@ -19,6 +19,8 @@ SI_UNITS = {
     "inertia": "kg m^2",
     "torque": "N m",
     "time": "s",
+    "force": "N",
+    "stress": "Pa",
     "number": "",
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""

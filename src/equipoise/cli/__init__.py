@@ -18,13 +18,25 @@ from . import (  # each registers its commands, in this order of the help
     demo,
     design,
     export,
+    hardware,
     layouts,
     reproduce,
     simulate,
 )
 from .app import app
 
-__all__ = ["app", "check", "demo", "design", "export", "layouts", "main", "reproduce", "simulate"]
+__all__ = [
+    "app",
+    "check",
+    "demo",
+    "design",
+    "export",
+    "hardware",
+    "layouts",
+    "main",
+    "reproduce",
+    "simulate",
+]
 
 
 def main() -> None:

@@ -21,11 +21,19 @@ def length(text: str, option: str) -> float:
     return quantity(text, "length", option)
 
 
+def positive_length(text: str, option: str) -> float:
+    """A length of more than 0 [m]."""
+    value = length(text, option)
+    if value <= 0:
+        raise InputError(Fault((option,), f"must be more than 0 m, found {text}"))
+    return value
+
+
 def quantity(text: str, dimension: str, option: str) -> float:
-    """A number in the SI unit of a dimension, or with a unit of its own.
+    """A number in the SI unit of `dimension`, or one with its unit.
 
     Raises:
-        InputError: it is neither; the message names the option.
+        InputError: it has another dimension, or is no number; the message names the option.
     """
     try:
         return to_si(text, dimension)
@@ -52,6 +60,21 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
+
+
+def share(text: str, option: str) -> float:
+    """A share from 0 to 1 such as ``0.02`` or ``2%``.
+
+    Raises:
+        InputError: it is not; the message names the option.
+    """
+    try:
+        value = _share(text)
+    except ValueError:
+        value = inf
+    if not 0 <= value <= 1:
+        raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
+    return value
 
 
 def _share(text: str) -> float:

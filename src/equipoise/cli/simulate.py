@@ -47,9 +47,7 @@ def simulate(
     """
     from . import options
 
-    size = None if radius is None else options.length(radius, "--radius")
-    if size is not None and size <= 0:
-        raise InputError(Fault(("--radius",), f"must be more than 0 m, found {radius}"))
+    size = None if radius is None else options.positive_length(radius, "--radius")
     mechanism = terminal.load(file)
     if move:
         _drive(mechanism, move, size, plot, json)

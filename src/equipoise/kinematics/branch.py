@@ -16,7 +16,7 @@ from ..arrays import Array, Booleans, Integers
 from ..mechanism import Body, Mechanism
 from . import assembly
 from .closure import Closure
-from .continuation import chunk, follow, tangent
+from .continuation import SHORTEST, follow, tangent
 from .sampling import bounds, inside
 from .tree import Tree
 
@@ -26,7 +26,11 @@ ROUNDS = 4  # each in the box of what the last has reached
 MARGIN = 0.25  # of that box, on every side
 ENOUGH = 0.5  # of the goals: no more rounds
 ATTEMPTS = 3  # nearest waypoints that a pose is tried from
-FLOOD = 8  # nearest reached waypoints that a goal is tried from
+FLOOD = 3  # nearest reached waypoints that a goal is tried from
+COARSE = (
+    0.02  # [rad, or share of the size] shortest step but from the nearest waypoint: it ends far from singular poses
+)
+BATCH_ENTRIES = 8_000_000  # velocities of the poses that are followed together: few of them need the last steps
 REMEMBERED = 131_072  # poses
 
 
@@ -107,7 +111,7 @@ class Branch:
         near = self._nearest(u, way.q)
         todo = np.flatnonzero(np.isfinite(u).all(axis=1))
         for start in near.T:
-            q, reached = self._follow(way, start[todo], u[todo])
+            q, reached = self._follow(way, start[todo], u[todo], SHORTEST)
             full[todo[reached]] = q[reached]
             status[todo[reached]] = Status.CLOSED
             todo = todo[~reached]
@@ -116,10 +120,10 @@ class Branch:
         full[bad], status[bad] = np.nan, Status.SINGULAR
         return full, status
 
-    def _follow(self, way: Waypoints, start: Integers, goal: Array) -> tuple[Array, Booleans]:
+    def _follow(self, way: Waypoints, start: Integers, goal: Array, shortest: float) -> tuple[Array, Booleans]:
         def part(i: slice) -> tuple[Array, Booleans]:
             k = start[i]
-            return follow(self.closure, self.split, way.q[k], way.T[k], way.J[k], goal[i])
+            return follow(self.closure, self.split, way.q[k], way.T[k], way.J[k], goal[i], shortest)
 
         return self._by_parts(part, len(goal), (np.zeros((0, self.open.n)), np.zeros(0, bool)))
 
@@ -133,7 +137,7 @@ class Branch:
 
     def _by_parts(self, work: Callable[[slice], tuple], count: int, nothing: tuple) -> tuple:
         """What `work` returns for `count` poses, a chunk at a time."""
-        size = chunk(self.closure)
+        size = max(16, BATCH_ENTRIES // (6 * self.open.n * len(self.open.names)))
         parts = [work(slice(i, i + size)) for i in range(0, count, size)]
         return tuple(np.concatenate(found) for found in zip(nothing, *parts, strict=True))
 
@@ -200,7 +204,7 @@ class Branch:
             worth = np.isfinite(apart.min(axis=1)) & (tried[todo].sum(axis=1) < FLOOD)
             todo, start = todo[worth], apart[worth].argmin(axis=1)
             tried[todo, start] = True
-            q, done = self._follow(reached, start, goals[todo])
+            q, done = self._follow(reached, start, goals[todo], COARSE)
             reached = self._with(reached, q[done])
             todo = todo[~done]
         return reached

@@ -19,7 +19,7 @@ CLOSED = 1e-13  # residual, as a share of the mechanism's size
 ITERATIONS = 7
 STALLED = 0.5  # Newton gives up when the residual shrinks less than this
 STRAY = 0.3  # [rad, or share of the size] how far the closed pose may be from where the tangent led
-SHORTEST = 0.02  # [rad, or share of the size] no shorter step is tried, but for a whole path
+SHORTEST = 0.002  # [rad, or share of the size] no shorter step is tried, but for a whole path
 CHUNK_ENTRIES = 300_000  # velocities held at a time: what stays in a processor's cache
 
 
@@ -52,18 +52,16 @@ def tangent(J: Array, split: Split) -> tuple[Array, Array]:
     return -T, condition
 
 
-def chunk(closure: Closure) -> int:
-    """How many poses to work on at a time."""
-    return max(16, CHUNK_ENTRIES // (6 * closure.tree.n * len(closure.tree.names)))
-
-
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")  # a stray iterate may be anywhere: it does not count
-def follow(closure: Closure, split: Split, start: Array, T: Array, J: Array, goal: Array) -> tuple[Array, Booleans]:
+def follow(
+    closure: Closure, split: Split, start: Array, T: Array, J: Array, goal: Array, shortest: float = SHORTEST
+) -> tuple[Array, Booleans]:
     """Follow straight paths of the independent coordinates from closed poses.
 
     Args:
         start: (N, n) closed poses; `T` (N, d, m) and `J` (N, count, n) their tangents and Jacobians.
         goal: (N, m) values of the independent coordinates.
+        shortest: the least step [rad, or share of the size]; close to a singular pose only short ones count.
 
     Returns:
         (N, n) closed poses at the goals, and (N,) which of them were reached; the others are anywhere.
@@ -90,12 +88,19 @@ def follow(closure: Closure, split: Split, start: Array, T: Array, J: Array, goa
         step[moved] *= 2
         step[todo[~good]] /= 2
         done[moved] = at[moved] == 1.0
-        todo = todo[~done[todo] & (step[todo] * length[todo] >= SHORTEST)]
+        todo = todo[~done[todo] & (step[todo] * length[todo] >= shortest)]
     return q, done
 
 
 def _newton(closure: Closure, split: Split, q: Array) -> tuple[Array, Array, Array, Booleans]:
     """Close `q` (N, n) with the independent coordinates held: poses, last Jacobians, last tangents, which closed."""
+    size = max(16, CHUNK_ENTRIES // (6 * closure.tree.n * len(closure.tree.names)))
+    parts = [_newton_chunk(closure, split, q[i : i + size]) for i in range(0, len(q), size)]
+    q, J, T, closed = (np.concatenate(found) for found in zip(*parts, strict=True))
+    return q, J, T, closed
+
+
+def _newton_chunk(closure: Closure, split: Split, q: Array) -> tuple[Array, Array, Array, Booleans]:
     q, closed = q.copy(), np.zeros(len(q), bool)
     J = np.zeros((len(q), closure.count, len(split.dependent)))
     T = np.zeros((len(q), len(split.dependent), len(split.independent)))

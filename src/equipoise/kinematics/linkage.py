@@ -48,6 +48,10 @@ class Linkage(Tree):
         self.n = len(self.coordinates)
         self.C = self.open.C[:, independent]
 
+    @property
+    def rest(self) -> Array:
+        return self.branch.assembled[self.branch.split.independent]
+
     def values(self, q: Array) -> Array:
         """(N, motions) every elementary joint value [rad or m]; NaN where the loops do not close."""
         return self.open.values(self.branch.solve(q)[0])

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 
 from ..arrays import Array, Booleans, Integers
 from ..mechanism import SINGLE, Joint, Mechanism
-from ..rotation import about, from_rpy
+from ..rotation import about, from_rpy, harmonics
 
 
 @dataclass(frozen=True)
@@ -153,6 +153,11 @@ class Tree:
         """ "rad" or "m" for each coordinate; its torque is in N m or N."""
         return tuple("rad" if turns else "m" for turns in self.turns)
 
+    @property
+    def rest(self) -> Array:
+        """(n,) a configuration in which it can be: all zero, or as its loops are assembled."""
+        return np.zeros(self.n)
+
     def values(self, q: Array) -> Array:
         """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""
         return q @ self.C.T + self.s0
@@ -164,19 +169,39 @@ class Tree:
     def poses(self, q: Array) -> Poses:
         """Body poses at configurations `q` (N, n) [rad or m]."""
         N, s = len(q), self.values(q)
+        constant, cosine, sine = self._turning
+        turns = constant[:, None] + cosine[:, None] * np.cos(s.T)[..., None, None]
+        turns += sine[:, None] * np.sin(s.T)[..., None, None]  # (motions, N, 3, 3)
         R = np.empty((N, len(self.names), 3, 3))
         p = np.empty((N, len(self.names), 3))
         R[:, 0], p[:, 0] = np.eye(3), 0.0
         for link in self.links:
-            turn, shift = np.broadcast_to(link.R0, (N, 3, 3)), np.broadcast_to(link.p0, (N, 3))
+            turn, shift = link.R0, link.p0
+            rotations = [turns[motion.row] for motion in link.motions if motion.rotates]
+            if rotations:
+                turn = reduce(np.matmul, rotations)  # the first has R0 in it
+            if link.slide:
+                shift = shift + s[:, link.slide.row, None] * (link.R0 @ link.slide.axis)
+            R[:, link.body] = R[:, link.base] @ turn
+            p[:, link.body] = p[:, link.parent] + (R[:, link.parent] @ shift[..., None])[..., 0]
+        return Poses(R, p)
+
+    @cached_property
+    def _turning(self) -> tuple[Array, Array, Array]:
+        """(motions, 3, 3) each: what is constant, times the cosine and times the sine in each motion's rotation.
+
+        The orientation at zero is in the first rotation of a joint.
+        """
+        found = np.zeros((3, len(self.motions), 3, 3))
+        for link in self.links:
+            before = link.R0
             for motion in link.motions:
                 if motion.rotates:
-                    turn = turn @ about(motion.axis, s[:, motion.row])
-                else:
-                    shift = shift + s[:, motion.row, None] * (link.R0 @ motion.axis)
-            R[:, link.body] = R[:, link.base] @ turn
-            p[:, link.body] = p[:, link.parent] + np.einsum("nij,nj->ni", R[:, link.parent], shift)
-        return Poses(R, p)
+                    A0, A1 = harmonics(motion.axis)
+                    found[:, motion.row] = before @ np.stack([A0, 2 * A1.real, -2 * A1.imag])
+                    before = np.eye(3)
+        constant, cosine, sine = found
+        return constant, cosine, sine
 
     def axes(self, q: Array, poses: Poses) -> Array:
         """(N, motions, 3) unit axes of the elementary motions in the world, at `q` (N, n) with its `poses`."""

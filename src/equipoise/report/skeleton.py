@@ -39,7 +39,7 @@ class Skeleton:
     """What is drawn of a mechanism.
 
     Attributes:
-        bars: the bodies, from joint to joint, and of a last body to its centre of mass or payload.
+        bars: the bodies, from joint to joint or loop end, and of a last body to its centre of mass or payload.
         brackets: thin lines from a body to the spring ends and payloads that are not on it.
         joints: of joints that move.  base: where the mechanism stands.
         springs, masses: one per spring and point mass.
@@ -72,14 +72,15 @@ class Skeleton:
         )
         masses = tuple(Point(tree.index[m.body], np.array(m.position)) for m in mechanism.masses)
         bars = _bars(tree, masses)
-        base = tuple(Point(0, link.p0) for link in tree.links if link.parent == 0)
-        rest = tree.poses(np.zeros((1, tree.n)))
+        met = _met(tree)
+        base = (*(Point(0, link.p0) for link in tree.links if link.parent == 0), *(end for end in met if not end.body))
+        rest = tree.poses(tree.rest[None])
         ends = [end for pair in springs for end in pair]
-        brackets = [_bracket(end, bars, fixed, rest) for end in (*ends, *masses)]
+        brackets = [_bracket(end, bars, base, fixed, rest) for end in (*ends, *masses)]
         return Skeleton(
             bars=bars,
             brackets=tuple(bar for bar in brackets if _length(bar, rest) > SAME),
-            joints=tuple(Point(link.parent, link.p0) for link in tree.links if link.joint.type != "fixed"),
+            joints=(*(Point(link.parent, link.p0) for link in tree.links if link.joint.type != "fixed"), *met),
             base=base,
             springs=springs,
             masses=masses,
@@ -111,6 +112,14 @@ class Skeleton:
         return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, b in self.springs], axis=1)
 
 
+def _met(tree: Tree) -> tuple[Point, ...]:
+    """Both ends of every loop."""
+    ends = (
+        (body, p) for loop in tree.mechanism.loops for body, p in ((loop.body_a, loop.p_a), (loop.body_b, loop.p_b))
+    )
+    return tuple(Point(tree.index[body], np.array(p)) for body, p in ends)
+
+
 def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
     origin, bars = np.zeros(3), []
     for link in tree.links:
@@ -118,20 +127,26 @@ def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
             bars.append(Bar(link.parent, Point(link.parent, origin), Point(link.parent, link.p0)))
         if link.slide is not None:
             bars.append(Bar(link.body, Point(link.parent, link.p0), Point(link.body, origin)))
+    met = [end for end in _met(tree) if end.body]
+    bars += [Bar(end.body, Point(end.body, origin), end) for end in met if np.linalg.norm(end.p) > SAME]
     parents = {link.parent for link in tree.links}
+    closed = {end.body for end in met}
     for i, body in enumerate(tree.mechanism.bodies, start=1):
-        loads = [mass.p for mass in masses if mass.body == i] + ([np.array(body.com)] if body.mass else [])
+        loads = [mass.p for mass in masses if mass.body == i] + (
+            [np.array(body.com)] if body.mass and i not in closed else []
+        )
         tip = max(loads, key=lambda p: float(np.linalg.norm(p)), default=origin)
         if i not in parents and np.linalg.norm(tip) > SAME:
             bars.append(Bar(i, Point(i, origin), Point(i, tip)))
     return tuple(bars)
 
 
-def _bracket(end: Point, bars: tuple[Bar, ...], fixed: set[int], rest: Poses) -> Bar:
+def _bracket(end: Point, bars: tuple[Bar, ...], base: tuple[Point, ...], fixed: set[int], rest: Poses) -> Bar:
     """From the nearest place on the body of `end` to it; all fixed bodies count as one."""
     group = fixed if end.body in fixed else {end.body}
     here = end.at(rest)[0]
-    foot = rest.p[0, end.body]
+    feet = [rest.p[0, end.body], *(point.at(rest)[0] for point in base if 0 in group)]
+    foot = min(feet, key=lambda p: float(np.linalg.norm(here - p)))
     for bar in bars:
         if bar.a.body in group and bar.b.body in group:
             a, b = bar.a.at(rest)[0], bar.b.at(rest)[0]

@@ -16,9 +16,10 @@ from ..balance import check
 from ..energy.potential import Potential
 from ..kinematics import Tree
 from ..mechanism import Body, Joint, Mechanism
-from ..synthesis.delta import Variant, design
+from ..synthesis.delta import design, one_per_leg
 from ..synthesis.delta_legs import DeltaLeg, delta_legs
 from ..synthesis.delta_robot import DeltaRobot
+from ..synthesis.delta_workspace import Goal
 from ..synthesis.rocker import Guide, TwoAxisRocker
 from .record import Map, Plot, Reproduction, Row
 
@@ -32,6 +33,7 @@ EXAMPLE = DeltaRobot()  # section 9: AB = CD = 0.5 m, the masses; the radii do n
 AV, AW, M7 = 0.25, 0.3, 1.8  # [m], [m], [kg] section 9
 PRINTED_K = "583.699"
 HEIGHTS = (0.5, 0.8)  # [m] below the base
+SPRING: dict[str, Any] = {"AV": AV, "AW": AW, "spring_7": M7, "heights": HEIGHTS}
 RANGE = (-4.354817, -3.45915)  # [rad] of theta_11, section 9
 SWING = {"fig10": 3.5, "fig11": 2.6, "fig12": np.pi}  # [rad] theta_13
 ASSUMED = "mass centres at mid-link and half the spring's mass at V assumed: the paper prints neither"
@@ -82,8 +84,8 @@ def _rocker() -> list[Row]:
 
 
 def _example(robot: Mechanism) -> list[Row]:
-    found = design(robot, variant="axis", AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=0.0)
-    k = found.free_parameters["stiffness"]
+    _, found = one_per_leg(robot, "axis", **SPRING, reach=0.0)
+    k = found.numbers["stiffness"]
     legs, _ = delta_legs(robot)
     u = _actuators(legs, _axis(HEIGHTS[0], HEIGHTS[1], 61))
     state = Potential(found.mechanism)(u)
@@ -109,8 +111,8 @@ def _example(robot: Mechanism) -> list[Row]:
         "platform 10 % heavier": {"link_6": 1.1 * EXAMPLE.link_6},
     }.items():
         altered = replace(EXAMPLE, **change).mechanism()
-        other = design(altered, variant="axis", AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=0.0)
-        moved = 100 * (other.free_parameters["stiffness"] / k - 1)
+        _, other = one_per_leg(altered, "axis", **SPRING, reach=0.0)
+        moved = 100 * (other.numbers["stiffness"] / k - 1)
         rows.append(Row(PAPER, f"sensitivity of k7: {what}", None, moved, "%"))
     places = _axis(*HEIGHTS, 200) + np.random.default_rng(1).uniform(-0.1, 0.1, (200, 3)) * [1, 1, 0]
     poses = Tree.of(robot).poses(_actuators(legs, places))
@@ -123,12 +125,12 @@ def _example(robot: Mechanism) -> list[Row]:
 def _workspaces(robot: Mechanism) -> list[Row]:
     rows = []
     for reach in (0.05, 0.1, 0.25):
-        found = design(robot, variant="axis", AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=reach).free_parameters
+        found = one_per_leg(robot, "axis", **SPRING, reach=reach)[1].numbers
         where = f"platform within +-{reach:g} m, 0.5 to 0.8 m down"
         note = "the paper claims about 5 % of the unbalanced moment" if reach == 0.1 else ""
         rows.append(Row(PAPER, f"largest residual, {where}", None, found["residual_peak"], "N m", note=note))
         rows.append(Row(PAPER, f"largest unbalanced, {where}", None, found["unbalanced_peak"], "N m"))
-    best = design(robot, variant="optimum", AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=0.1).free_parameters
+    best = one_per_leg(robot, "peak", **SPRING, reach=0.1)[1].numbers
     rows.append(Row(PAPER, "optimised over +-0.1 m: largest residual", None, best["residual_peak"], "N m"))
     rows.append(Row(PAPER, "optimised over +-0.1 m: times better than (15)", None, best["times_better"]))
     return rows
@@ -164,7 +166,7 @@ def _figures(robot: Mechanism) -> list[Plot]:
 
     theta_11 counts from straight up, so that link 2 is at A = theta_11 + 3 pi/2 below the horizontal.
     """
-    balanced = design(robot, variant="axis", AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=0.0).mechanism
+    balanced = one_per_leg(robot, "axis", **SPRING, reach=0.0)[1].mechanism
     legs, _ = delta_legs(robot)
     theta = np.linspace(*RANGE, 121)
     A = theta + 1.5 * np.pi
@@ -195,9 +197,9 @@ def _map(robot: Mechanism) -> Map:
     legs, _ = delta_legs(robot)
     u = _actuators(legs, places)
     panels = {}
-    variants: dict[str, Variant] = {"spring by (15)": "axis", "optimised over ±0.1 m": "optimum"}
-    for label, variant in variants.items():
-        found = design(robot, variant=variant, AV=AV, AW=AW, spring_7=M7, heights=HEIGHTS, reach=0.1)
+    goals: dict[str, Goal] = {"spring by (15)": "axis", "optimised over ±0.1 m": "peak"}
+    for label, goal in goals.items():
+        _, found = one_per_leg(robot, goal, **SPRING, reach=0.1)
         panels[label] = np.abs(Potential(found.mechanism)(u).torque).max(axis=1).reshape(x.shape)
     title = "Largest residual moment of the three actuators, platform 0.65 m below the base"
     return Map("residual", title, "x [m]", "y [m]", "moment [N m]", side, side, panels)

@@ -21,7 +21,7 @@ from ..errors import Fault, InputError
 from ..mechanism import Body, Joint, Mechanism
 from ..rotation import to_rpy
 from .delta_legs import DeltaLeg, NotDelta, delta_legs
-from .delta_workspace import OBJECTIVES, Box, Objective, best_springs
+from .delta_workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 from .design import Design
 from .method import Method, Parameter
 from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
@@ -73,19 +73,38 @@ def design(
             raise InputError(
                 Fault((name,), f"variant '{variant}' has no such option", valid if variant == "full" else ())
             )
-    legs, platform = _legs(mechanism)
     common: dict[str, Any] = {"variant": variant, "AV": AV, "AW": AW, "spring_7": spring_7, "share_7": share_7}
     if variant == "full":
         parts = Guide(**guide)
         made = full(mechanism, parts, AV, AW, spring_7, share_7, link_2p)
         used = {f.name: getattr(parts, f.name) for f in fields(parts)}
         return Design.of(made, "delta", {**common, "link_2p": link_2p, **used})
-    box = Box.of(mechanism, legs, platform, heights, reach)
-    found = best_springs(
-        mechanism, legs, box, (AV, AW), (spring_7, share_7), "axis" if variant == "axis" else objective, samples, seed
-    )
+    goal: Goal = "axis" if variant == "axis" else objective
+    box, found = one_per_leg(
+        mechanism, goal, AV=AV, AW=AW, spring_7=spring_7, share_7=share_7, heights=heights, reach=reach,
+        samples=samples, seed=seed,
+    )  # fmt: skip
     area = {"heights": list(box.heights), "reach": box.reach}
     return Design.of(found.mechanism, "delta", {**common, **area, "objective": objective, **found.numbers})
+
+
+def one_per_leg(
+    mechanism: Mechanism,
+    goal: Goal,
+    *,
+    AV: float = 0.25,
+    AW: float = 0.3,
+    spring_7: float = 0.0,
+    share_7: float = 0.5,
+    heights: Sequence[float] | None = None,
+    reach: float = 0.1,
+    samples: int = 2000,
+    seed: int = 0,
+) -> tuple[Box, Found]:
+    """The springs of the variants axis and optimum, judged in the box of the platform's places only; see `design`."""
+    legs, platform = _legs(mechanism)
+    box = Box.of(mechanism, legs, platform, heights, reach)
+    return box, best_springs(mechanism, legs, box, (AV, AW), (spring_7, share_7), goal, samples, seed)
 
 
 def applies(mechanism: Mechanism) -> list[str]:

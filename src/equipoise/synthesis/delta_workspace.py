@@ -24,6 +24,7 @@ from .rocker import vec3
 
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[str, ...] = get_args(Objective)
+Goal = Literal["axis", "rms", "peak"]
 LEVELS = 101  # heights on the axis
 
 
@@ -88,7 +89,7 @@ def best_springs(
     box: Box,
     lengths: tuple[float, float],
     mass: tuple[float, float],
-    objective: Literal["axis", "rms", "peak"],
+    objective: Goal,
     samples: int,
     seed: int,
 ) -> Found:

@@ -1,0 +1,204 @@
+"""`equipoise hardware`, `equipoise stock` and `equipoise made-up`: springs to wind, to buy and to practise with."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import Fault, InputError
+from . import terminal
+from .app import File, Json, app
+
+if TYPE_CHECKING:
+    from ..hardware import Options
+
+
+@app.command()
+def hardware(
+    file: File,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the bill as a table: .csv")] = None,
+    sheet: Annotated[Path | None, typer.Option(help="write a dimensioned drawing: .svg or .dxf")] = None,
+    realise: Annotated[
+        str | None, typer.Option(help="direct, case, telescope, pulley or eyelet (default: what leaves least)")
+    ] = None,
+    wire: Annotated[str, typer.Option(metavar="GRADE,...", help="grades of wire to choose from")] = "DH",
+    strength: Annotated[str | None, typer.Option(help="tensile strength of the wire instead of the standard's")] = None,
+    outer: Annotated[str | None, typer.Option(help="largest outer diameter of a spring")] = None,
+    length: Annotated[str | None, typer.Option(help="largest length of a spring in use")] = None,
+    pulley: Annotated[str, typer.Option(help="radius of the pulleys")] = "10mm",
+    most: Annotated[int, typer.Option(min=1, help="at most this many springs side by side")] = 8,
+    fatigue: Annotated[float, typer.Option(min=0, help="Goodman margin asked for; 0: none")] = 0.0,
+    safety: Annotated[float, typer.Option(min=0.01, help="static margin asked for")] = 1.0,
+    limit: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=VALUE", help="another permissible stress; --json lists them")
+    ] = None,
+    friction: Annotated[
+        list[str] | None, typer.Option(metavar="KIND=SHARE", help="of a realisation, such as pulley=1%")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Springs to wind for a design, how to realise zero free length, and what that leaves. Exit code 1 if it cannot.
+
+    Example: [bold]equipoise hardware balanced.yaml --outer 40mm --length 600mm -o bill.csv --sheet springs.svg[/bold]
+    """
+    from ..balance import check
+    from ..hardware import bill as make
+    from ..io.files import check_writable, write_text
+    from ..report.drawing import check_sheet, save_drawing
+
+    options = _options(wire, strength, outer, length, pulley, most, limit or [], friction or [])
+    options = replace(options, limits=replace(options.limits, fatigue=fatigue, safety=safety))
+    mechanism = terminal.load(file)
+    if output:
+        if output.suffix.lower() != ".csv":
+            raise InputError(Fault(("--output",), f"a bill is written as .csv, found '{output.suffix}'"))
+        check_writable(output)
+    if sheet:
+        check_sheet(sheet)
+    with terminal.progress_bar("judging the design") as report:
+        bill = make(check(mechanism), options, realise, report)
+    if output:
+        from ..report.bill import bill_csv
+
+        write_text(output, bill_csv(bill))
+    if sheet:
+        from ..report.sheet import sheet as draw
+
+        save_drawing(draw(bill), sheet)
+    if json:
+        terminal.print_json(bill.to_dict())
+    else:
+        from ..report.bill import bill_lines
+
+        terminal.show(bill_lines(bill))
+    for path in filter(None, (output, sheet)):
+        terminal.say(f"wrote {path}")
+    raise typer.Exit(0 if bill.complete else 1)
+
+
+@app.command()
+def stock(
+    file: File,
+    catalogue: Annotated[Path, typer.Argument(help="springs in stock: .csv or .parquet", show_default=False)],
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the moved design: .yaml")] = None,
+    goal: Annotated[str, typer.Option(help="mass or price")] = "mass",
+    column: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=HEADER", help="which column is which, with its unit in brackets")
+    ] = None,
+    travel: Annotated[
+        str, typer.Option(metavar="LOW:HIGH", help="attachments move between these times their distance from the joint")
+    ] = "0.25:4",
+    reach: Annotated[str | None, typer.Option(help="and at most this far from the joint")] = None,
+    seconds: Annotated[float, typer.Option(min=0.1, help="stop with the best so far and its gap")] = 60.0,
+    json: Json = False,
+) -> None:
+    """The best stock springs for a design, with attachments moved to fit their rates, and the proof that they are.
+
+    Example: [bold]equipoise stock balanced.yaml list.csv --column "rate=R [N/mm]" -o stock.yaml[/bold]
+    """
+    from ..balance import check
+    from ..hardware.choice import choose
+    from ..hardware.movable import Travel
+    from ..hardware.stock import read_catalogue
+    from ..io import check_savable, save
+    from . import options
+
+    low, high = _travel(travel)
+    limits = Travel(low, high) if reach is None else Travel(low, high, options.length(reach, "--reach"))
+    columns = dict(_named(text, "--column") for text in column or [])
+    mechanism = terminal.load(file)
+    springs = read_catalogue(catalogue, columns)
+    if output:
+        check_savable(output)
+    with terminal.progress_bar("judging the design") as report:
+        before = check(mechanism)
+        found = choose(before, springs, goal=goal, travel=limits, seconds=seconds, progress=report)  # type: ignore[arg-type]
+        after = check(found.mechanism)
+    if output:
+        save(found.mechanism, output)
+    if json:
+        terminal.print_json(found.to_dict() | {"balance": after.to_dict()})
+    else:
+        from ..report.bill import choice_lines
+        from ..report.text import verdict
+
+        terminal.show(choice_lines(found, before, after))
+        terminal.show(iter([verdict(after)]))
+    if output:
+        terminal.say(f"wrote {output}")
+
+
+@app.command(name="made-up")
+def made_up(
+    output: Annotated[Path, typer.Option("-o", "--output", help=".csv or .parquet", show_default=False)],
+    count: Annotated[int, typer.Option(min=1, help="springs")] = 2000,
+    seed: Annotated[int, typer.Option(min=0, help="another list")] = 0,
+) -> None:
+    """A list of springs that no vendor sells, to practise `equipoise stock` with.
+
+    Example: [bold]equipoise made-up -o list.csv --count 500[/bold]
+    """
+    from ..hardware.made_up import made_up_catalogue
+    from ..hardware.stock import write_catalogue
+
+    write_catalogue(made_up_catalogue(count, seed), output)
+    terminal.say(f"wrote {output}: {count} springs, all made up")
+
+
+def _options(
+    wires: str,
+    strength: str | None,
+    outer: str | None,
+    length: str | None,
+    pulley: str,
+    most: int,
+    limits: list[str],
+    friction: list[str],
+) -> Options:
+    from ..hardware import Envelope, Limits, Options, wire
+    from ..hardware.realise import FRICTION
+    from . import options
+
+    rm = None if strength is None else options.quantity(strength, "stress", "--strength")
+    room = {
+        name: options.positive_length(text, f"--{name}")
+        for name, text in (("outer", outer), ("length", length))
+        if text is not None
+    }
+    held = dict(FRICTION)
+    for text in friction:
+        kind, value = _named(text, "--friction")
+        if kind not in held:
+            raise InputError(Fault(("--friction",), f"unknown realisation '{kind}'", tuple(held)))
+        held[kind] = options.share(value, "--friction")
+    radius = options.length(pulley, "--pulley")
+    if not 0 <= radius < 10:
+        raise InputError(Fault(("--pulley",), f"must be from 0 to 10 m, found {pulley}"))
+    return Options(
+        wires=tuple(wire(name, rm) for name in options.names(wires)),
+        limits=Limits.changed(dict(_named(text, "--limit") for text in limits)),
+        envelope=Envelope(**room),
+        pulley=radius,
+        most=most,
+        friction=held,
+    )
+
+
+def _named(text: str, option: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise InputError(Fault((option,), f"expected NAME=VALUE, found '{text}'"))
+    return name.strip(), value.strip()
+
+
+def _travel(text: str) -> tuple[float, float]:
+    low, colon, high = text.partition(":")
+    try:
+        if colon:
+            return float(low), float(high)
+    except ValueError:
+        pass
+    raise InputError(Fault(("--travel",), f"expected LOW:HIGH such as 0.25:4, found '{text}'"))
