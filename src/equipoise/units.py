@@ -18,6 +18,7 @@ SI_UNITS = {
     "acceleration": "m/s^2",
     "inertia": "kg m^2",
     "torque": "N m",
+    "force": "N",
     "number": "",
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""

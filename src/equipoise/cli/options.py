@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
 from ..units import to_si
+
+if TYPE_CHECKING:
+    from ..mechanism import Mechanism
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -18,14 +21,38 @@ def length(text: str, option: str) -> float:
     Raises:
         InputError: it is not a length; the message names the option.
     """
-    return _quantity(text, "length", option)
+    return quantity(text, "length", option)
 
 
-def _quantity(text: str, dimension: str, option: str) -> float:
+def quantity(text: str, dimension: str, option: str) -> float:
+    """A number in the SI unit of `dimension`, or one with its unit.
+
+    Raises:
+        InputError: it has another dimension, or is no number; the message names the option.
+    """
     try:
         return to_si(text, dimension)
     except ValueError as error:
         raise InputError(Fault((option,), str(error))) from None
+
+
+def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:
+    """``TORQUE`` for all turning joints, ``JOINT=TORQUE`` for one; a sliding joint's is a force [N].
+
+    Raises:
+        InputError: an unknown joint, or not a torque or force.
+    """
+    from ..kinematics import Tree
+
+    tree, found = Tree.of(mechanism), {}
+    units = dict(zip(tree.coordinates, tree.units, strict=True))
+    for text in texts:
+        name, equals, value = text.rpartition("=")
+        if equals and name not in units:
+            raise InputError(Fault(("--friction",), f"there is no coordinate {nearest(name, units)}", tuple(units)))
+        for joint in (name,) if equals else [joint for joint, unit in units.items() if unit == "rad"]:
+            found[joint] = quantity(value, "torque" if units[joint] == "rad" else "force", "--friction")
+    return found
 
 
 def tolerance(text: str) -> tuple[float | None, float | None]:
@@ -47,6 +74,21 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
+
+
+def share(text: str, option: str) -> float:
+    """A share from 0 to 1 such as ``0.02`` or ``2%``.
+
+    Raises:
+        InputError: it is not; the message names the option.
+    """
+    try:
+        value = _share(text)
+    except ValueError:
+        value = inf
+    if not 0 <= value <= 1:
+        raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
+    return value
 
 
 def _share(text: str) -> float:
@@ -149,4 +191,4 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None
         case dimension:
-            return _quantity(text, dimension, f"--set {name}")
+            return quantity(text, dimension, f"--set {name}")
