@@ -36,6 +36,18 @@ def quantity(text: str, dimension: str, option: str) -> float:
         raise InputError(Fault((option,), str(error))) from None
 
 
+def free_lengths(texts: list[str]) -> float | dict[str, float] | None:
+    """``LENGTH`` for all springs or ``SPRING=LENGTH`` for some; None when nothing is given.
+
+    Raises:
+        InputError: not a length, or one for all beside one for a spring.
+    """
+    found = {name.strip(): length(value, "--free-length") for name, _, value in (t.rpartition("=") for t in texts)}
+    if "" in found and len(texts) > 1:
+        raise InputError(Fault(("--free-length",), "give one length for all springs, or SPRING=LENGTH for each"))
+    return found.get("", found) if found else None
+
+
 def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:
     """``TORQUE`` for all turning joints, ``JOINT=TORQUE`` for one; a sliding joint's is a force [N].
 
