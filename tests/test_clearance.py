@@ -1,5 +1,6 @@
 """Clearance over the workspace in closed form, slack and over-centre poses, and the file's capsules."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -61,3 +62,15 @@ def test_capsules_in_the_file(tmp_path):
 def test_without_springs_there_is_nothing_to_say():
     with pytest.raises(InputError, match="no springs"):
         clearance(zoo.pendulum().with_springs(()))
+
+
+def test_command_line(run, tmp_path):
+    file = tmp_path / "post.yaml"
+    eq.save(with_post(0.2), file)
+    code, out, _ = run("clearance", file, "--samples", 200)
+    assert code == 0
+    for text in ("CLEAR: least distance 80 mm", "SLACK", "goes over centre about shoulder", "post"):
+        assert text in out
+    code, out, _ = run("clearance", file, "--samples", 200, "--least", "90mm", "--json")
+    assert code == 1
+    assert json.loads(out)["least"] == pytest.approx(0.08)

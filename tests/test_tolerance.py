@@ -244,3 +244,22 @@ def test_a_hundred_thousand_builds_of_a_robot_in_half_a_minute():
     live = small.first_order > 1e-3 * small.first_order.max()
     assert small.spread[live] == pytest.approx(small.first_order[live], rel=0.03)
     assert np.abs(small.mean[live]) == pytest.approx(0, abs=0.03 * small.first_order.max())
+
+
+def test_payload_sweep_is_symmetric_about_the_payload_that_is_balanced(run, tmp_path):
+    m = zoo.pendulum()
+    m = replace(m, springs=(replace(m.springs[0], stiffness=zoo.PENDULUM_K * (2 * 0.3 + 0.4) / 0.6),))  # 1 kg at 0.4 m
+    file = tmp_path / "arm.yaml"
+    eq.save(m, file)
+    options = ("--payload", "0.5,1.5kg", "--payload-on", "arm", "--payload-at", "0.4,0,0")
+    code, out, _ = run("check", file, *options, "--json")
+    answer = json.loads(out)
+    assert code == 1
+    assert answer["payload"]["payloads"] == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])
+    assert answer["payload"]["exact"] == [False, False, True, False, False]
+    slope = zoo.G * 0.4
+    peaks = [row[0] for row in answer["payload"]["residual"]]
+    assert peaks == pytest.approx([0.5 * slope, 0.25 * slope, 0, 0.25 * slope, 0.5 * slope], abs=1e-9)
+    assert "0.75 kg" in run("check", file, *options)[1]
+    assert run("check", file, "--payload", "1,2")[0] == 2
+    assert run("check", file, "--payload", "2,1", "--payload-on", "arm")[0] == 2

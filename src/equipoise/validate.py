@@ -88,13 +88,8 @@ def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault
 
 
 def _names(m: Mechanism) -> Iterator[Fault]:
-    for kind, items in (
-        ("bodies", m.bodies),
-        ("joints", m.joints),
-        ("springs", m.springs),
-        ("masses", m.masses),
-        ("capsules", m.capsules),
-    ):
+    sections = ("bodies", "joints", "springs", "masses", "capsules")
+    for kind, items in ((section, getattr(m, section)) for section in sections):
         seen: dict[str, int] = {}
         for i, item in enumerate(items):
             if not item.name:

@@ -15,6 +15,7 @@ import typer
 from ..errors import EquipoiseError
 from . import (
     check,
+    clearance,
     demo,
     design,
     export,
@@ -23,7 +24,7 @@ from . import (
 )
 from .app import app
 
-__all__ = ["app", "check", "demo", "design", "export", "main", "reproduce", "tolerance"]
+__all__ = ["app", "check", "clearance", "demo", "design", "export", "main", "reproduce", "tolerance"]
 
 
 def main() -> None:

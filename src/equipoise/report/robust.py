@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..robust import Tolerance
+from ..robust import Sweep, Tolerance
 from .style import number
 
 LISTED = 8  # parameters that are named
@@ -33,6 +33,19 @@ def tolerance_lines(found: Tolerance) -> Iterator[RenderableType]:
     yield Text(f"what causes the mean square torque (first-order Sobol indices): {kinds}")
     for parameter, share in found.ranked[:LISTED]:
         yield Text(f"  {100 * share:5.1f} %  {parameter.name}")
+
+
+def sweep_table(found: Sweep) -> Table:
+    """Peak residual torque of every coordinate at every payload."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("payload", justify="right")
+    first = found.balances[0]
+    for name, unit in zip(first.coordinates, first.units, strict=True):
+        table.add_column(Text(f"{name} [{'N m' if unit == 'rad' else 'N'}]"), justify="right")
+    for mass, balance in zip(found.payloads, found.balances, strict=True):
+        floor = 1e-10 * float(balance.unbalanced.max.max(initial=0))
+        table.add_row(f"{mass:.4g} kg", *(number(float(v) if v > floor else 0.0) for v in balance.residual.max))
+    return table
 
 
 def _table(found: Tolerance) -> Table:
