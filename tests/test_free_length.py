@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,12 +71,9 @@ def test_the_jacobian_by_differences():
 
 
 def test_bad_options():
-    for given, options in (
-        (-0.1, {}),
-        ({"spring": 0.1}, {}),
-        (0.1, {"preload": 2.0}),
-        (0.1, {"stiffness_factor": 0.5}),
-    ):
+    bad: list[tuple[Any, dict[str, Any]]]
+    bad = [(-0.1, {}), ({"spring": 0.1}, {}), (0.1, {"preload": 2.0}), (0.1, {"stiffness_factor": 0.5})]
+    for given, options in bad:
         with pytest.raises(InputError):
             ordinary(zoo.pendulum(), given, **options)
     with pytest.raises(InputError, match="no springs"):

@@ -19,7 +19,7 @@ def tolerance_lines(found: Tolerance) -> Iterator[RenderableType]:
     """Yield, peaks and margins per coordinate, and what matters most."""
     builds, s = len(found.peak), found.scatter
     yield Text(f"{found.mechanism.name}: {builds:,} builds, each at {found.poses:,} poses", style="bold")
-    what = "limits +-" if s.shape == "uniform" else "standard deviations "
+    what = "limits (+-)" if s.shape == "uniform" else "standard deviations"
     yield Text(
         f"{s.shape} scatter, {what}: stiffness {100 * s.stiffness:.3g} %, attachments {1e3 * s.attachment:.3g} mm, "
         f"masses {100 * s.mass:.3g} %, lengths {1e3 * s.length:.3g} mm"
