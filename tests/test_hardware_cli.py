@@ -5,6 +5,7 @@ import json
 import xml.etree.ElementTree as ET
 from itertools import pairwise
 
+import ezdxf.filemanagement
 import pytest
 from robots import lee_chen, lee_chen_springs
 
@@ -172,10 +173,9 @@ def test_dimension_lines_are_as_long_as_what_they_measure() -> None:
 
 
 def test_dxf(tmp_path) -> None:
-    ezdxf = pytest.importorskip("ezdxf")
     found = sheet(made())
     save_drawing(found, tmp_path / "springs.dxf")
-    document = ezdxf.readfile(tmp_path / "springs.dxf")
+    document = ezdxf.filemanagement.readfile(tmp_path / "springs.dxf")
     assert not document.audit().errors
     assert document.units == 4  # mm
     texts = {text.dxf.text for text in document.modelspace().query("TEXT")}

@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from importlib import import_module
 from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
+from peers import peer
 from random_mechanisms import random_mechanism, random_poses
 from scipy.spatial.transform import Rotation
 from test_kinematics import slow_poses, slow_values
@@ -25,8 +24,7 @@ from equipoise.kinematics import Tree
 from equipoise.mechanism import WORLD, Body, Joint, Mechanism
 from equipoise.spring import Spring, Vec3
 
-# under CI it has to be there
-pin: Any = import_module("pinocchio") if os.environ.get("CI") else pytest.importorskip("pinocchio")
+pin = peer("pinocchio")
 
 
 def slow_energy(m: Mechanism, q: np.ndarray) -> tuple[float, list[float], list[float]]:

@@ -22,8 +22,6 @@ NAMES = {
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_round_trip(tmp_path, suffix) -> None:
-    if suffix == ".parquet":
-        pytest.importorskip("pyarrow")
     springs = made_up_catalogue(60)
     write_catalogue(springs, tmp_path / f"list{suffix}")
     assert read_catalogue(tmp_path / f"list{suffix}") == springs

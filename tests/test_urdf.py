@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
+from peers import peer
 
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import urdf
@@ -62,7 +62,7 @@ def test_robots_read(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_robots_agree_with_pinocchio(name: str) -> None:
     """Masses, centres of mass and inertias, each moved by a second parser to the joint that carries the body."""
-    pin = importlib.import_module("pinocchio") if os.environ.get("CI") else pytest.importorskip("pinocchio")
+    pin = peer("pinocchio")
     m = urdf.read(ROBOTS / f"{name}.urdf")
     model = pin.buildModelFromUrdf(str(ROBOTS / f"{name}.urdf"))
     q = np.random.default_rng(1).uniform(-1, 1, model.nq)

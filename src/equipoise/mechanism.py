@@ -89,6 +89,17 @@ class PointMass:
 
 
 @dataclass(frozen=True)
+class Capsule:
+    """The space a link takes: everything within `radius` of the segment `p_a`, `p_b` in the frame of `body` [m]."""
+
+    name: str
+    body: str
+    p_a: Vec3
+    p_b: Vec3
+    radius: float
+
+
+@dataclass(frozen=True)
 class Workspace:
     """Where approximate balance is judged: `samples` random poses inside the joint ranges."""
 
@@ -119,6 +130,7 @@ class Mechanism:
     provenance: Mapping[str, Any] = field(default_factory=dict, hash=False)
     independent: tuple[str, ...] = ()
     assembly: tuple[tuple[str, float], ...] = ()
+    capsules: tuple[Capsule, ...] = ()
 
     def __post_init__(self) -> None:
         from .validate import faults

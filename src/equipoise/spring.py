@@ -19,6 +19,7 @@ class Spring:
         free_length: [m]; 0, the default, is the zero-free-length spring of static balancing.
         mass: [kg], lumped at the two ends.
         mass_split: the share of `mass` at `p_a`; the rest is at `p_b`.
+        diameter: outside of the coils [m], for clearance only.
     """
 
     name: str
@@ -30,3 +31,4 @@ class Spring:
     free_length: float = 0.0
     mass: float = 0.0
     mass_split: float = 0.5
+    diameter: float = 0.0

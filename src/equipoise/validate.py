@@ -57,6 +57,10 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
     for i, mass in enumerate(m.masses):
         yield from finite(("masses", i, "position"), mass.position)
         yield from _at_least(("masses", i, "mass"), mass.mass, 0, "kg")
+    for i, capsule in enumerate(m.capsules):
+        for end in ("p_a", "p_b"):
+            yield from finite(("capsules", i, end), getattr(capsule, end))
+        yield from _at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
     for i, spring in enumerate(m.springs):
         for end in ("p_a", "p_b"):
             yield from finite(("springs", i, end), getattr(spring, end))
@@ -64,6 +68,7 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
             yield Fault(("springs", i, "stiffness"), f"must be more than 0 N/m, found {spring.stiffness:g}")
         yield from _at_least(("springs", i, "free_length"), spring.free_length, 0, "m")
         yield from _at_least(("springs", i, "mass"), spring.mass, 0, "kg")
+        yield from _at_least(("springs", i, "diameter"), spring.diameter, 0, "m")
         if not 0 <= spring.mass_split <= 1:
             yield Fault(("springs", i, "mass_split"), f"must be between 0 and 1, found {spring.mass_split:g}")
     for i, joint in enumerate(m.joints):
@@ -83,7 +88,8 @@ def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault
 
 
 def _names(m: Mechanism) -> Iterator[Fault]:
-    for kind, items in (("bodies", m.bodies), ("joints", m.joints), ("springs", m.springs), ("masses", m.masses)):
+    sections = ("bodies", "joints", "springs", "masses", "capsules")
+    for kind, items in ((section, getattr(m, section)) for section in sections):
         seen: dict[str, int] = {}
         for i, item in enumerate(items):
             if not item.name:
@@ -125,6 +131,8 @@ def _references(m: Mechanism) -> Iterator[Fault]:
                 yield from body((kind, i, key), getattr(item, key))
     for i, mass in enumerate(m.masses):
         yield from body(("masses", i, "body"), mass.body)
+    for i, capsule in enumerate(m.capsules):
+        yield from body(("capsules", i, "body"), capsule.body)
 
 
 def _joints(m: Mechanism) -> Iterator[Fault]:

@@ -15,6 +15,7 @@ import typer
 from ..errors import EquipoiseError
 from . import (  # each registers its commands, in this order of the help
     check,
+    clearance,
     demo,
     design,
     export,
@@ -22,12 +23,14 @@ from . import (  # each registers its commands, in this order of the help
     layouts,
     reproduce,
     simulate,
+    tolerance,
 )
 from .app import app
 
 __all__ = [
     "app",
     "check",
+    "clearance",
     "demo",
     "design",
     "export",
@@ -36,6 +39,7 @@ __all__ = [
     "main",
     "reproduce",
     "simulate",
+    "tolerance",
 ]
 
 

@@ -17,6 +17,10 @@ def check(
     tolerance: Annotated[
         str, typer.Option(help="good when the peak residual is below this share of the unbalanced peak, or 'X N m'")
     ] = "1e-10",
+    payload: Annotated[str | None, typer.Option(metavar="LOW,HIGH", help="also sweep a range of payloads")] = None,
+    payload_on: Annotated[str | None, typer.Option(metavar="BODY", help="the body that carries it")] = None,
+    payload_at: Annotated[str, typer.Option(metavar="X,Y,Z", help="where, in that body's frame")] = "0,0,0",
+    steps: Annotated[int, typer.Option(min=2, help="payloads in the sweep")] = 5,
     samples: Annotated[int | None, typer.Option(min=1, help="random poses (default: the file's workspace)")] = None,
     seed: Annotated[int, typer.Option(min=0, help="of the random poses")] = 0,
     json: Json = False,
@@ -33,15 +37,29 @@ def check(
     mechanism = terminal.load(file)
     if torque is not None and "m" in Tree.of(mechanism).units:
         raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
+    if payload is not None and payload_on is None:
+        raise InputError("--payload: needs --payload-on, the body that carries it")
+    swept = None
     with terminal.progress_bar("judging") as report:
         report("judging the balance", 0.0)
         balance = judge(mechanism, samples=samples, seed=seed)
+        if payload is not None and payload_on is not None:
+            from ..robust import sweep
+
+            report("sweeping payloads", 0.0)
+            low, high, place = options.payload(payload, payload_at)
+            swept = sweep(mechanism, low, high, payload_on, place, steps=steps)
+            balance = swept.worst
     good = balance.balanced(share or 0.0, torque)
     if json:
-        terminal.print_json(balance.to_dict())
+        terminal.print_json(balance.to_dict() | ({} if swept is None else {"payload": swept.to_dict()}))
     else:
         from ..report.text import balance_lines
 
         answer = "" if balance.exact else f"{'within' if good else 'not within'} the tolerance of {tolerance}"
         terminal.show(balance_lines(balance, answer))
+        if swept is not None:
+            from ..report.robust import sweep_table
+
+            terminal.show(iter(["at the payload with the largest residual; the whole range:", sweep_table(swept)]))
     raise typer.Exit(0 if good else 1)

@@ -67,6 +67,16 @@ def design(
     keep: Annotated[
         bool, typer.Option("--keep", help="the file's own springs stay (default: they are replaced)")
     ] = False,
+    free_length: Annotated[
+        list[str] | None,
+        typer.Option(metavar="[SPRING=]LENGTH", help="make the best of springs with a free length; may be repeated"),
+    ] = None,
+    stiffness_factor: Annotated[
+        float, typer.Option(min=1, help="with --free-length: stiffness may change by this factor")
+    ] = 5.0,
+    preload: Annotated[
+        str, typer.Option(help="with --free-length: the share of it that initial tension may take away")
+    ] = "0%",
     samples: Annotated[
         int | None, typer.Option(min=1, help="random poses to judge on (default: exact averages where possible)")
     ] = None,
@@ -104,6 +114,8 @@ def design(
     given = {name: value for name, value in given.items() if terminal.typed(context, asked.get(name, name))}
     if method in METHODS:
         given |= options.settings(set_ or [], METHODS[method].parameters)
+    wound = {"stiffness_factor": stiffness_factor, "preload": options.share(preload, "--preload")}
+    lengths = options.free_lengths(free_length or [])
     mechanism = terminal.load(file)
     if output:
         check_savable(output)  # before the work, not after it
@@ -113,6 +125,9 @@ def design(
         terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
     with terminal.progress_bar("designing") as report:
         found = run(mechanism, method, progress=report, **given)
+        if lengths is not None:
+            report("giving the springs a free length", 0.0)
+            found = found.with_free_length(lengths, **wound)
         report("judging the design", 0.0)
         balance = found.balance
         if output:

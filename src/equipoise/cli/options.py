@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
 from ..units import to_si
+
+if TYPE_CHECKING:
+    from ..mechanism import Mechanism
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -39,6 +42,50 @@ def quantity(text: str, dimension: str, option: str) -> float:
         return to_si(text, dimension)
     except ValueError as error:
         raise InputError(Fault((option,), str(error))) from None
+
+
+def payload(masses: str, place: str) -> tuple[float, float, tuple[float, float, float]]:
+    """``LOW,HIGH`` [kg] and ``X,Y,Z`` [m].
+
+    Raises:
+        InputError: not two masses, or not three lengths.
+    """
+    bounds = [quantity(text, "mass", "--payload") for text in masses.split(",")]
+    point = [length(text, "--payload-at") for text in place.split(",")]
+    if len(bounds) != 2 or len(point) != 3:
+        raise InputError("--payload: expected LOW,HIGH such as 0,2kg, and --payload-at X,Y,Z such as 0,0,50mm")
+    return bounds[0], bounds[1], (point[0], point[1], point[2])
+
+
+def free_lengths(texts: list[str]) -> float | dict[str, float] | None:
+    """``LENGTH`` for all springs or ``SPRING=LENGTH`` for some; None when nothing is given.
+
+    Raises:
+        InputError: not a length, or one for all beside one for a spring.
+    """
+    found = {name.strip(): length(value, "--free-length") for name, _, value in (t.rpartition("=") for t in texts)}
+    if "" in found and len(texts) > 1:
+        raise InputError(Fault(("--free-length",), "give one length for all springs, or SPRING=LENGTH for each"))
+    return found.get("", found) if found else None
+
+
+def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:
+    """``TORQUE`` for all turning joints, ``JOINT=TORQUE`` for one; a sliding joint's is a force [N].
+
+    Raises:
+        InputError: an unknown joint, or not a torque or force.
+    """
+    from ..kinematics import Tree
+
+    tree, found = Tree.of(mechanism), {}
+    units = dict(zip(tree.coordinates, tree.units, strict=True))
+    for text in texts:
+        name, equals, value = text.rpartition("=")
+        if equals and name not in units:
+            raise InputError(Fault(("--friction",), f"there is no coordinate {nearest(name, units)}", tuple(units)))
+        for joint in (name,) if equals else [joint for joint, unit in units.items() if unit == "rad"]:
+            found[joint] = quantity(value, "torque" if units[joint] == "rad" else "force", "--friction")
+    return found
 
 
 def tolerance(text: str) -> tuple[float | None, float | None]:

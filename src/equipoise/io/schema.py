@@ -182,6 +182,7 @@ class SpringItem(Item):
     free_length: Length = 0.0
     mass: Mass = 0.0
     mass_split: Number = 0.5
+    diameter: Length = 0.0
 
 
 class MassItem(Item):
@@ -190,6 +191,15 @@ class MassItem(Item):
     body: Text
     mass: Mass
     position: Point = (0.0, 0.0, 0.0)
+
+
+class CapsuleItem(Item):
+    kind = "a capsule"
+    name: Text
+    body: Text
+    p_a: Point
+    p_b: Point
+    radius: Length
 
 
 class WorkspaceItem(Item):
@@ -231,6 +241,7 @@ class MechanismFile(Item):
     assembly: dict[str, Any] = {}  # angles or lengths: their joints tell
     springs: list[SpringItem] = []
     masses: list[MassItem] = []
+    capsules: list[CapsuleItem] = []
     workspace: WorkspaceItem = WorkspaceItem()
     provenance: dict[str, Any] = {}
 
@@ -242,6 +253,7 @@ _ITEMS: dict[str, type[Item]] = {
     "loops": LoopItem,
     "springs": SpringItem,
     "masses": MassItem,
+    "capsules": CapsuleItem,
     "workspace": WorkspaceItem,
     "dh": DhTable,
 }

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 
 from ..errors import Fault, InputError, Path, nearest
-from ..mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..spring import Spring
 from ..units import to_si
 from . import MODEL_SUFFIXES, dh, load
@@ -71,6 +71,7 @@ def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
             loops=tuple(Loop(**item.values()) for item in file.loops),
             springs=tuple(Spring(**item.values()) for item in file.springs),
             masses=tuple(PointMass(**item.values()) for item in file.masses),
+            capsules=tuple(Capsule(**item.values()) for item in file.capsules),
             gravity=file.gravity,
             workspace=Workspace(**file.workspace.values()),
             provenance=file.provenance,

@@ -14,6 +14,7 @@ from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
 from ..spring import Vec3
 from ..synthesis import METHODS, Design, Parameter
+from ..synthesis.free_length import Ordinary
 from ..units import SI_UNITS
 
 
@@ -113,11 +114,28 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         yield Text(f"  bound       {least}: {why}; {gap}")
     for name, value in design.free_parameters.items() if method.exact else ():
         yield Text(f"  {name:<11} {free_value(value, method.parameters.get(name))}")
+    if design.ordinary is not None:
+        yield from _ordinary_lines(design.ordinary)
     if design.infeasible is not None:
         yield Text(f"  {design.infeasible}", style="yellow")
     if design.front:
         yield front_table(design)
     yield from balance_lines(design.balance)
+
+
+def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
+    """What the free lengths cost: peak residual, and how much stiffer and stronger the springs get."""
+    yield Text(
+        f"  free length: peak residual {_percent(found.ideal.relative)} of the unbalanced peak without it, "
+        f"{_percent(found.plain.relative)} with it, {_percent(found.balance.relative)} optimised "
+        f"({found.gain:.3g} times smaller)"
+    )
+    for row in found.to_dict()["springs"]:
+        (k, new_k), (force, new_force) = row["stiffness"], row["max_force"]
+        yield Text(
+            f"  {row['name']}: {k:.5g} -> {new_k:.5g} N/m, largest force {force:.4g} -> {new_force:.4g} N, "
+            f"initial tension {max(0.0, row['preload']):.3g} N"
+        )
 
 
 def front_table(design: Design) -> Table:

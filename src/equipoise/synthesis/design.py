@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..balance import Balance, check
 from ..mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from .free_length import Ordinary
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class Design:
         exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.
         infeasible: the proof that they cannot.
         front: the best design for each number of springs, when it was asked for.
+        ordinary: what was lost when the springs got a free length.
     """
 
     mechanism: Mechanism
@@ -88,6 +92,7 @@ class Design:
     exact_feasible: bool | None = None
     infeasible: Infeasible | None = None
     front: tuple[FrontRow, ...] = ()
+    ordinary: Ordinary | None = None
 
     @staticmethod
     def of(mechanism: Mechanism, method: str, free_parameters: Mapping[str, Any]) -> Design:
@@ -123,6 +128,22 @@ class Design:
         if self.bound is None:
             return None
         return max(0.0, self.residual - self.bound) / self.unbalanced if self.unbalanced else 0.0
+
+    def with_free_length(self, free_length: float | Mapping[str, float], **options: Any) -> Design:
+        """The same design made the best of with ordinary springs; see `free_length.ordinary`. Its bound is no more."""
+        from .free_length import ordinary
+
+        found = ordinary(self.mechanism, free_length, **options)
+        residual = sqrt(float(sum(found.balance.residual.rms**2)))
+        unbalanced = sqrt(float(sum(found.balance.unbalanced.rms**2)))
+        samples = found.balance.certificate.samples
+        given = {**self.free_parameters, "free_length": dict(found.free_length), **options}
+        design = replace(
+            self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
+            joints=None, averaged=False, samples=samples, free_parameters=given, ordinary=found,
+        ).with_provenance()  # fmt: skip
+        design.__dict__["balance"] = replace(found.balance, mechanism=design.mechanism)  # judged once
+        return design
 
     def with_provenance(self) -> Design:
         """The same design whose mechanism says how it was made."""
@@ -168,5 +189,6 @@ class Design:
                 for row in self.front
             ],
             "free_parameters": dict(self.free_parameters),
+            "free_length": None if self.ordinary is None else self.ordinary.to_dict(),
             "balance": self.balance.to_dict(),
         }  # fmt: skip

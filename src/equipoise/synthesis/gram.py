@@ -187,7 +187,7 @@ def torque_rows(problem: Problem, q: Array) -> Iterator[tuple[Array, Array, Arra
         energy = np.empty((len(lifts), 7, 7))
         for p, (pair, lift) in enumerate(zip(problem.pairs, lifts, strict=True)):
             A, B = (tree.index[name] for name in pair)
-            Z, dZ = _stretch(poses, velocities, A, B)
+            Z, dZ = stretch(poses, velocities, A, B)
             Z, dZ = Z @ lift, dZ @ lift
             half = np.einsum("nia,njib->njab", Z, dZ)
             torque[:, :, p] = svec((half + np.swapaxes(half, -1, -2)) / 2)
@@ -195,7 +195,7 @@ def torque_rows(problem: Problem, q: Array) -> Iterator[tuple[Array, Array, Arra
         yield torque.reshape(len(chunk), tree.n, -1), load(chunk).torque, energy
 
 
-def _stretch(poses: Poses, velocities: Velocities, A: int, B: int) -> tuple[Array, Array]:
+def stretch(poses: Poses, velocities: Velocities, A: int, B: int) -> tuple[Array, Array]:
     """Z (N, 3, 7) of THEORY section 1 and its derivative (N, n, 3, 7)."""
     Z = np.concatenate([-poses.R[:, A], (poses.p[:, B] - poses.p[:, A])[:, :, None], poses.R[:, B]], axis=2)
 

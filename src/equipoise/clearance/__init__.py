@@ -1,0 +1,6 @@
+"""How close springs come to links and to each other, and the poses in which a spring does not do its work."""
+
+from .judge import Clearance, Gap, Line, clearance
+from .segments import closest
+
+__all__ = ["Clearance", "Gap", "Line", "clearance", "closest"]

@@ -1,0 +1,120 @@
+"""The smallest distances of springs to links and to each other over the workspace, and springs that do not pull."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..energy.peak import climb
+from ..energy.potential import Potential
+from ..errors import InputError
+from ..kinematics import Tree, sample
+from ..mechanism import Mechanism
+from ..validate import MAX_SAMPLES, whole_number
+from .segments import closest
+
+TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The smallest distance between the surfaces of a spring and a capsule or another spring [m], and its pose (n,)."""
+
+    spring: str
+    other: str
+    distance: float
+    configuration: Array
+
+
+@dataclass(frozen=True)
+class Line:
+    """A spring's states: the share of poses in which it is `slack`, shorter than its free length, and, of each
+    coordinate that it goes over centre about, the share in which it pulls the other, rarer way."""
+
+    spring: str
+    slack: float
+    over_centre: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """What is true of the room around springs; `gaps` smallest first. A spring may touch the links it is fixed to."""
+
+    gaps: tuple[Gap, ...]
+    lines: tuple[Line, ...]
+
+    @property
+    def least(self) -> float:
+        """[m] inf where there is nothing to come close to."""
+        return min((gap.distance for gap in self.gaps), default=np.inf)
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "least": self.least if np.isfinite(self.least) else None,
+            "gaps": [{**vars(gap), "configuration": gap.configuration.tolist()} for gap in self.gaps],
+            "springs": [vars(line) for line in self.lines],
+        }
+
+
+def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0) -> Clearance:
+    """Judge the room around the springs: random poses, then a climb from the closest of them.
+
+    Raises:
+        InputError: no springs, or loops that cannot be closed.
+    """
+    if not mechanism.springs:
+        raise InputError(f"mechanism '{mechanism.name}' has no springs")
+    tree = Tree.of(mechanism)
+    samples = mechanism.workspace.samples if samples is None else samples
+    whole_number("samples", samples, 1, MAX_SAMPLES)
+    q = sample(tree, samples, seed)
+    names, distances = _distances(mechanism)
+    least, where = climb(tree, lambda x: -distances(x), q, seed)
+    gaps = [Gap(*name, float(-d), at) for name, d, at in zip(names, least, where, strict=True)]
+    return Clearance(tuple(sorted(gaps, key=lambda gap: gap.distance)), tuple(_lines(mechanism, q)))
+
+
+def _distances(mechanism: Mechanism) -> tuple[list[tuple[str, str]], Callable[[Array], Array]]:
+    """The pairs (spring, other), and the distance of their surfaces (N, pairs) [m] at configurations (N, n)."""
+    tree, springs, capsules = Tree.of(mechanism), mechanism.springs, mechanism.capsules
+    bodies = [(tree.index[s.body_a], tree.index[s.body_b]) for s in springs]
+    bodies += [(tree.index[c.body],) * 2 for c in capsules]
+    ends = np.array([[one.p_a, one.p_b] for one in (*springs, *capsules)])
+    radius = np.array([*(s.diameter / 2 for s in springs), *(c.radius for c in capsules)])
+    pairs = [(i, j) for i in range(len(springs)) for j in range(i + 1, len(springs))]
+    pairs += [
+        (i, j) for i in range(len(springs)) for j in range(len(springs), len(bodies)) if bodies[j][0] not in bodies[i]
+    ]
+    first, second = (np.array([pair[side] for pair in pairs], int) for side in (0, 1))
+
+    def distances(q: Array) -> Array:
+        poses = tree.poses(q)
+        p = [np.stack([poses.point(b[e], at[e]) for b, at in zip(bodies, ends, strict=True)], 1) for e in (0, 1)]
+        gap = closest(p[0][:, first], p[1][:, first], p[0][:, second], p[1][:, second])[0]
+        return gap - radius[first] - radius[second]
+
+    label = [one.name for one in (*springs, *capsules)]
+    return [(label[i], label[j]) for i, j in pairs], distances
+
+
+def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
+    """Of each spring: slack poses, and the coordinates about which its lever arm changes sign."""
+    tree, found = Tree.of(mechanism), []
+    poses = tree.poses(q)
+    velocities = tree.velocities(q, poses)
+    length = Potential(mechanism)(q).length
+    for i, spring in enumerate(mechanism.springs):
+        A, B = tree.index[spring.body_a], tree.index[spring.body_b]
+        p_a, p_b = np.array(spring.p_a), np.array(spring.p_b)
+        d = poses.point(B, p_b) - poses.point(A, p_a)
+        rate = np.einsum("ni,nij->nj", d, velocities.point(poses, B, p_b) - velocities.point(poses, A, p_a))
+        arm = rate / np.maximum(length[:, i], 1e-12)[:, None]
+        floor = TURNED * np.abs(arm).max(initial=0)
+        rarer = np.minimum((arm > floor).mean(axis=0), (arm < -floor).mean(axis=0))
+        over = {name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0}
+        found.append(Line(spring.name, float((length[:, i] < spring.free_length).mean()), over))
+    return found

@@ -1,0 +1,41 @@
+"""The room around springs, as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from rich.text import Text
+
+from ..clearance import Clearance
+from ..kinematics import Tree
+from ..mechanism import Mechanism
+
+LISTED = 8  # distances
+
+
+def clearance_lines(mechanism: Mechanism, found: Clearance, limit: float) -> Iterator[Text]:
+    """The verdict, the smallest distances, the worst pose, and the springs that do not always pull one way."""
+    if not found.gaps:
+        yield Text("nothing to come close to: one spring, and no capsules in the file", style="yellow")
+    else:
+        good, first = found.least >= limit, found.gaps[0]
+        yield Text(
+            f"{'CLEAR' if good else 'NOT CLEAR'}: least distance {1e3 * found.least:.4g} mm, "
+            f"{first.spring} to {first.other}",
+            style="bold green" if good else "bold yellow",
+        )
+        tree = Tree.of(mechanism)
+        pose = ", ".join(
+            f"{name} {np.degrees(value):.1f} deg" if unit == "rad" else f"{name} {1e3 * value:.1f} mm"
+            for name, value, unit in zip(tree.coordinates, first.configuration, tree.units, strict=True)
+        )
+        yield Text(f"worst pose: {pose}")
+    for gap in found.gaps[:LISTED]:
+        yield Text(f"  {1e3 * gap.distance:9.3f} mm  {gap.spring} to {gap.other}")
+    for line in found.lines:
+        if line.slack:
+            yield Text(f"{line.spring}: SLACK, shorter than its free length, in {100 * line.slack:.3g} % of poses")
+        if line.over_centre:
+            shares = ", ".join(f"{name} ({100 * share:.3g} %)" for name, share in line.over_centre.items())
+            yield Text(f"{line.spring}: goes over centre about {shares} of poses")

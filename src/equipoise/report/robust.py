@@ -1,0 +1,67 @@
+"""What scatter does to a design, as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from ..robust import Sweep, Tolerance
+from .style import number
+
+LISTED = 8  # parameters that are named
+
+
+def tolerance_lines(found: Tolerance) -> Iterator[RenderableType]:
+    """Yield, peaks and margins per coordinate, and what matters most."""
+    builds, s = len(found.peak), found.scatter
+    yield Text(f"{found.mechanism.name}: {builds:,} builds, each at {found.poses:,} poses", style="bold")
+    what = "limits (+-)" if s.shape == "uniform" else "standard deviations"
+    yield Text(
+        f"{s.shape} scatter, {what}: stiffness {100 * s.stiffness:.3g} %, attachments {1e3 * s.attachment:.3g} mm, "
+        f"masses {100 * s.mass:.3g} %, lengths {1e3 * s.length:.3g} mm"
+    )
+    if found.yield_ is not None:
+        style = "bold green" if found.yield_ >= 0.95 else "bold yellow"
+        yield Text(f"YIELD: {100 * found.yield_:.4g} % of builds hold every pose within friction", style=style)
+    yield _table(found)
+    yield Text(f"spread of the torque over the poses: {found.agreement:.4g} of first-order propagation", style="dim")
+    kinds = ", ".join(f"{kind} {100 * share:.3g} %" for kind, share in found.by_kind.items())
+    yield Text(f"what causes the mean square torque (first-order Sobol indices): {kinds}")
+    for parameter, share in found.ranked[:LISTED]:
+        yield Text(f"  {100 * share:5.1f} %  {parameter.name}")
+
+
+def sweep_table(found: Sweep) -> Table:
+    """Peak residual torque of every coordinate at every payload."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("payload", justify="right")
+    first = found.balances[0]
+    for name, unit in zip(first.coordinates, first.units, strict=True):
+        table.add_column(Text(f"{name} [{'N m' if unit == 'rad' else 'N'}]"), justify="right")
+    for mass, balance in zip(found.payloads, found.balances, strict=True):
+        floor = 1e-10 * float(balance.unbalanced.max.max(initial=0))
+        table.add_row(f"{mass:.4g} kg", *(number(float(v) if v > floor else 0.0) for v in balance.residual.max))
+    return table
+
+
+def _table(found: Tolerance) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("joint", no_wrap=True)
+    for title in ("peak as drawn", "mean", "spread", "95 % below", "99 % below", "friction", "margin 5 %", "unit"):
+        table.add_column(title, justify="right", no_wrap=True)
+    p95, p99 = np.percentile(found.peak, (95, 99), axis=0)
+    order = list(found.friction)
+    for j, (name, unit) in enumerate(zip(found.coordinates, found.units, strict=True)):
+        peak = found.peak[:, j]
+        drawn = found.nominal[j] if found.nominal[j] > 1e-9 * p95.max(initial=0) else 0.0
+        held = ["-", "-"]
+        if name in found.friction:
+            least = float(np.percentile(found.margin[:, order.index(name)], 5))
+            held = [number(found.friction[name]), f"{'-' if least < 0 else ''}{number(abs(least))}"]
+        cells = [number(float(v)) for v in (drawn, peak.mean(), peak.std(), p95[j], p99[j])]
+        table.add_row(Text(name), *cells, *held, "N m" if unit == "rad" else "N")
+    return table
