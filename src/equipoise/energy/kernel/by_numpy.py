@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from ...arrays import Array
+import numpy as np
+from numpy.typing import NDArray
+
 from . import trace
 from .trace import Program
 
 CHUNK = 4096  # poses: registers stay in the cache
 
 
-def run(program: Program, q: Array, out: Array) -> None:
-    """Compute `out` (outputs, N) at `q` (inputs, N)."""
+def run(program: Program, q: NDArray[Any], out: NDArray[Any]) -> float:
+    """Compute `out` (outputs, N) at `q` (inputs, N), any strides, and return 0: no pose is too far."""
     N = q.shape[1]
     registers = np.empty((program.registers + 1, min(N, CHUNK)), out.dtype)
     with np.errstate(all="ignore"):  # what is not a number comes from input that is not
@@ -20,7 +22,7 @@ def run(program: Program, q: Array, out: Array) -> None:
             part = q[:, start : start + CHUNK]
             r = registers[:, : part.shape[1]]
             _run(program, part, r)
-            bad = ~np.isfinite(part.sum(axis=0))
+            bad = ~np.isfinite(part).all(axis=0)
             for row, (register, sign) in enumerate(zip(program.outputs, program.sign, strict=True)):
                 mine = out[row, start : start + CHUNK]
                 if register < 0:
@@ -28,9 +30,10 @@ def run(program: Program, q: Array, out: Array) -> None:
                 else:
                     np.multiply(r[register], sign, out=mine)
                 mine[bad] = np.nan
+    return 0.0
 
 
-def _run(program: Program, q: Array, r: Array) -> None:
+def _run(program: Program, q: NDArray[Any], r: NDArray[Any]) -> None:
     scratch = r[-1]
     columns = (program.code, program.to, program.a, program.b, program.c, program.k, program.m)
     for code, to, a, b, c, k, m in zip(*(column.tolist() for column in columns), strict=True):

@@ -1,15 +1,14 @@
 """A kernel generated from the mechanism: its program as vector code of the machine at hand, through LLVM.
 
 The code is written with explicit vectors, one lane for each pose, and compiled in about a tenth of a second; llvmlite
-comes with numba. Poses lie next to each other in memory: arrays (rows, N), rows `stride` numbers apart.
+comes with numba. Poses lie next to each other in memory. Constants come from a table that the compiler cannot tell from
+the output: else it would keep every one of them as a whole vector on the stack, more than a cache holds.
 """
 
 from __future__ import annotations
 
 import ctypes
-import struct
 from collections.abc import Callable, Iterator
-from functools import cached_property
 
 import numpy as np
 
@@ -17,16 +16,17 @@ from . import sines, trace
 from .trace import Program
 
 BINARY = {trace.ADD: "fadd", trace.SUB: "fsub", trace.MUL: "fmul", trace.ADDK: "fadd", trace.MULK: "fmul"}
+AHEAD = 16  # vectors
 SIGNATURE = ctypes.CFUNCTYPE(
-    ctypes.c_double, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64
+    ctypes.c_double, *(ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64) * 2, *(ctypes.c_void_p,) * 2
 )
 
 
 class Generated:
-    """The compiled program; `run` is safe to call from several threads at once and holds no lock.
+    """The compiled program; safe to call from several threads at once, and holds no lock.
 
     Attributes:
-        lanes: poses computed at a time; `run` takes multiples of it.
+        lanes: poses computed at a time.
     """
 
     def __init__(self, program: Program, single: bool = False) -> None:
@@ -40,28 +40,44 @@ class Generated:
         machine = llvm.Target.from_default_triple().create_target_machine(
             cpu=llvm.get_host_cpu_name(), features=features.flatten(), opt=2
         )
-        self._text = _Writer(program, self.lanes, single).text()
-        module = llvm.parse_assembly(self._text)
+        writer = _Writer(program, self.lanes, single)
+        module = llvm.parse_assembly(writer.text())
         module.triple, module.data_layout = llvm.get_default_triple(), str(machine.target_data)
         module.verify()
         options = llvm.create_pipeline_tuning_options(speed_level=1)
         options.loop_unrolling = options.loop_vectorization = options.slp_vectorization = False
-        llvm.create_pass_builder(machine, options).getModulePassManager().run(module, llvm.create_pass_builder(machine, options))
+        passes = llvm.create_pass_builder(machine, options)
+        passes.getModulePassManager().run(module, passes)
+        self._constants = np.array(list(writer.constants), np.float32 if single else np.float64)
+        self._wide = np.array(list(writer.wide_constants), np.float64)
         self._engine = llvm.create_mcjit_compiler(module, machine)
         self._engine.finalize_object()
         self._call: Callable[..., float] = SIGNATURE(self._engine.get_function_address("kernel"))
         self._gather: Callable[..., float] = SIGNATURE(self._engine.get_function_address("gather"))
 
-    def run(self, q: np.ndarray, out: np.ndarray) -> float:
-        """Compute `out` (outputs, N) at `q` (inputs, N), N a multiple of `lanes`, rows of `out` without gaps.
+    def __call__(self, q: np.ndarray, out: np.ndarray) -> float:
+        """Compute `out` (outputs, N) at `q` (inputs, N), any strides in q; rows of `out` without gaps.
 
         Returns:
             The largest sum of |q| of any pose: beyond `sines.FARTHEST` the sines may be wrong.
         """
+        N = q.shape[1]
+        whole = N - N % self.lanes
+        far = self._run(q, out, whole) if whole else 0.0
+        if whole == N:
+            return far
+        rest, result = np.zeros((len(q), self.lanes), q.dtype), np.empty((len(out), self.lanes), q.dtype)
+        rest[:, : N - whole] = q[:, whole:]
+        far = max(far, self._run(rest, result, self.lanes))
+        out[:, whole:] = result[:, : N - whole]
+        return far
+
+    def _run(self, q: np.ndarray, out: np.ndarray, N: int) -> float:
         size = q.itemsize
-        between_rows, between_poses = q.strides[0] // size, q.strides[1] // size
-        call = self._call if between_poses == 1 else self._gather
-        return call(q.ctypes.data, between_rows, between_poses, out.ctypes.data, out.strides[0] // size, q.shape[1])
+        rows, poses = (stride // size for stride in q.strides)
+        call = self._call if poses == 1 else self._gather
+        output = (out.ctypes.data, out.strides[0] // size, N)
+        return call(q.ctypes.data, rows, poses, *output, self._constants.ctypes.data, self._wide.ctypes.data)
 
 
 class _Writer:
@@ -73,6 +89,8 @@ class _Writer:
         self.real, self.wide, self.whole = f"<{lanes} x {self.scalar}>", f"<{lanes} x double>", f"<{lanes} x i64>"
         self.lines: list[str] = []
         self.count = 0
+        self.constants: dict[float, int] = {}  # value -> place in the table
+        self.wide_constants: dict[float, int] = {}  # the same of double precision, where the rest is single
 
     def text(self) -> str:
         """The module."""
@@ -87,10 +105,12 @@ class _Writer:
         return "\n".join([*head, *self._function("kernel", False), *self._function("gather", True)])
 
     def _function(self, name: str, gather: bool) -> Iterator[str]:
-        yield f"define double @{name}(ptr noalias %q, i64 %qrow, i64 %qpose, ptr noalias %out, i64 %outrow, i64 %n) {{"
+        yield f"define double @{name}(ptr noalias %q, i64 %qrow, i64 %qpose, "
+        yield "  ptr %out, i64 %outrow, i64 %n, ptr %k, ptr %w) {"
         yield "entry:\n  %any = icmp sgt i64 %n, 0\n  br i1 %any, label %loop, label %done"
         yield "loop:"
-        yield f"  %i = phi i64 [0, %entry], [%next, %loop]\n  %far = phi {self.real} [zeroinitializer, %entry], [%farther, %loop]"
+        yield "  %i = phi i64 [0, %entry], [%next, %loop]"
+        yield f"  %far = phi {self.real} [zeroinitializer, %entry], [%farther, %loop]"
         self.lines = []
         self._body(gather)
         yield from self.lines
@@ -110,11 +130,14 @@ class _Writer:
         return name
 
     def _splat(self, x: float, wide: bool = False) -> str:
-        x = float(x)
-        single = self.single and not wide
-        value = struct.unpack(">Q", struct.pack(">d", float(np.float32(x)) if single else x))[0]
-        kind = "float" if single else "double"
-        return "<" + ", ".join([f"{kind} 0x{value:016X}"] * self.lanes) + ">"
+        wide = wide and self.single
+        table = self.wide_constants if wide else self.constants
+        at = table.setdefault(float(x), len(table))
+        scalar, real = ("double", self.wide) if wide else (self.scalar, self.real)
+        pointer = self._new(f"getelementptr {scalar}, ptr {'%w' if wide else '%k'}, i64 {at}")
+        value = self._new(f"load {scalar}, ptr {pointer}")
+        one = self._new(f"insertelement {real} poison, {scalar} {value}, i64 0")
+        return self._new(f"shufflevector {real} {one}, {real} poison, <{self.lanes} x i32> zeroinitializer")
 
     def _fma(self, a: str, b: str, c: str, wide: bool = False) -> str:
         real = self.wide if wide else self.real
@@ -126,6 +149,7 @@ class _Writer:
         if not gather:
             at = self._new(f"add i64 {base}, %i")
             pointer = self._new(f"getelementptr {self.scalar}, ptr %q, i64 {at}")
+            self._ahead(pointer, 0)
             return self._new(f"load {self.real}, ptr {pointer}, align {4 if self.single else 8}")
         vector = "poison"
         for lane in range(self.lanes):
@@ -137,13 +161,20 @@ class _Writer:
             vector = self._new(f"insertelement {self.real} {vector}, {self.scalar} {one}, i64 {lane}")
         return vector
 
+    def _ahead(self, pointer: str, write: int) -> None:
+        """Fetch what comes later: many rows are more streams than processors foresee."""
+        later = self._new(f"getelementptr {self.real}, ptr {pointer}, i64 {AHEAD}")
+        self.lines.append(f"  call void @llvm.prefetch.p0(ptr {later}, i32 {write}, i32 3, i32 1)")
+
     def _body(self, gather: bool) -> None:
         program = self.program
         rows = [self._load(row, gather) for row in range(program.inputs)]
         size = "zeroinitializer"
         for q in rows:
             kind = f"v{self.lanes}f{32 if self.single else 64}"
-            size = self._new(f"fadd {self.real} {size}, {self._new(f'call {self.real} @llvm.fabs.{kind}({self.real} {q})')}")
+            size = self._new(
+                f"fadd {self.real} {size}, {self._new(f'call {self.real} @llvm.fabs.{kind}({self.real} {q})')}"
+            )
         beyond = self._new(f"fcmp ogt {self.real} {size}, %far")
         self.lines.append(f"  %farther = select <{self.lanes} x i1> {beyond}, {self.real} {size}, {self.real} %far")
         nothing = self._new(f"fmul {self.real} {size}, zeroinitializer")  # NaN where the input is no finite number
@@ -165,6 +196,7 @@ class _Writer:
             base = self._new(f"mul i64 %outrow, {row}")
             at = self._new(f"add i64 {base}, %i")
             pointer = self._new(f"getelementptr {self.scalar}, ptr %out, i64 {at}")
+            self._ahead(pointer, 1)
             self.lines.append(f"  store {self.real} {value}, ptr {pointer}, align {4 if self.single else 8}")
 
     def _operation(self, code: int, a: str, b: str, c: str, k: float, m: float) -> str:

@@ -187,8 +187,11 @@ def _snap(x: float) -> float:
 
 
 def _snapped(M: Array) -> Array:
-    near = np.rint(M)
-    return np.where(np.abs(M - near) <= SNAP, near + 0.0, M)
+    found = M.copy()
+    near = np.rint(M) + 0.0  # no negative zero
+    close = np.abs(M - near) <= SNAP
+    found[close] = near[close]
+    return found
 
 
 def _about_z(turn: Turn) -> Array:

@@ -1,8 +1,8 @@
 """The recursions: energy and torque of gravity and springs written down on symbols.
 
-With the stretch of a spring as a sum over frames, ``d = sum_X R_X v_X``, and e_j the part of it that turns with joint j,
-a spring of energy ``|d|^2 / 2`` has the torque ``z_j . (e_j x d)``. Gravity is ``w . sum_X R_X h_X`` with the weight
-direction w = -g in the place of d. Stiffness is taken into the lengths: everything is scaled by its square root.
+With the stretch of a spring as a sum over frames, ``d = sum_X R_X v_X``, and e_j the part of it that turns with joint
+j, a spring of energy ``|d|^2 / 2`` has the torque ``z_j . (e_j x d)``. Gravity is ``w . sum_X R_X h_X`` with the
+weight direction w = -g in the place of d. Stiffness is taken into the lengths: everything is scaled by its square root.
 
 - `LOCAL`: e comes inwards and d goes outwards, each in the frames' own axes. Cheapest where springs span few joints.
 - `WORLD`: frames, points and moments in the world's axes. One pass serves all springs: cheapest for many or long ones.
@@ -13,7 +13,6 @@ Gravity's moment is passed in local axes in both: that is never dearer.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import sqrt
 from typing import Literal
 
@@ -23,25 +22,18 @@ from ...arrays import Array
 from ...spring import Spring
 from .layout import Layout, Turn
 from .trace import Program, Trace, Value, Vector
+from .vectors import ZERO, about_x, about_z, add, angle_sum, constant, cross, cross_z, minus, plus, scaled
 
 Recursion = Literal["local", "world"]
 RECURSIONS: tuple[Recursion, ...] = ("local", "world")
-ZERO: Vector = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Parts:
-    """What a program computes, in this order of its outputs.
-
-    With `split`: gravity's energy, the length of each spring, gravity's torque (n), the springs' torque (n). Else the
-    total energy and the total torque (n).
-    """
-
-    split: bool = False
 
 
 def programs(layout: Layout, split: bool) -> dict[Recursion, Program]:
-    """The program of every recursion; see `Parts` for its outputs."""
+    """The program of every recursion.
+
+    Its outputs with `split`: gravity's energy, the length of each spring, the torques of gravity (n) and of the
+    springs (n). Else the total energy and the total torque (n).
+    """
     return {recursion: Recurrence(layout).program(recursion, split) for recursion in RECURSIONS}
 
 
@@ -59,7 +51,7 @@ class Recurrence:
         self.turns = [self._turn(i) for i in range(len(layout.frames))]
 
     def program(self, recursion: Recursion, split: bool) -> Program:
-        """The program; see `Parts`."""
+        """The program; see `programs` for its outputs."""
         t = self.t
         gravity, gravity_torque = self._gravity()
         springs = self._local() if recursion == "local" else self._world()
@@ -78,7 +70,7 @@ class Recurrence:
         if i == 0:
             return 1.0, 0.0
         s, c = t.sincos(self.values[frame.row])
-        return _times(t, (c, s), frame.gamma)
+        return angle_sum(t, (c, s), frame.gamma)
 
     def _coordinates(self, rows: dict[int, Value]) -> list[Value]:
         """Torque per elementary motion -> per coordinate (n)."""
@@ -90,18 +82,22 @@ class Recurrence:
     def _inwards(self, i: int, v: Vector) -> tuple[Vector, Vector]:
         """Frame i's vector v before its turn about z (between gamma's and the turn), and in the base frame."""
         frame, t = self.layout.frames[i], self.t
-        turned = _about_z(t, self.turns[i], v)
-        return turned, _about_z(t, (frame.alpha.c, frame.alpha.s), _about_x(t, frame.beta, turned))
+        turned = about_z(t, self.turns[i], v)
+        return turned, about_z(t, (frame.alpha.c, frame.alpha.s), about_x(t, frame.beta, turned))
 
     def _outwards(self, i: int, v: Vector) -> tuple[Vector, Vector]:
         """The base's vector v before frame i's turn about z, and in frame i."""
         frame, t = self.layout.frames[i], self.t
-        tilted = _about_x(t, Turn(frame.beta.c, -frame.beta.s), _about_z(t, (frame.alpha.c, -frame.alpha.s), v))
+        tilted = about_x(t, Turn(frame.beta.c, -frame.beta.s), about_z(t, (frame.alpha.c, -frame.alpha.s), v))
         c, s = self.turns[i]
-        return tilted, _about_z(t, (c, -s), tilted)
+        return tilted, about_z(t, (c, -s), tilted)
 
     def _couple(
-        self, parts: dict[int, Vector], slides: list[tuple[int, int, Array]], weight: Vector | None, rows: dict[int, Value]
+        self,
+        parts: dict[int, Vector],
+        slides: list[tuple[int, int, Array]],
+        weight: Vector | None,
+        rows: dict[int, Value],
     ) -> Vector:
         """The local recursion for ``d = sum_X R_X parts_X``, or with a `weight` in frame 0 in the place of d.
 
@@ -118,7 +114,7 @@ class Recurrence:
             if i in e and i != top:
                 base = layout.frames[i].base
                 before[i], inner = self._inwards(i, e[i])
-                e[base] = _plus(t, e.get(base, ZERO), inner)
+                e[base] = plus(t, e.get(base, ZERO), inner)
         found = e.get(top, ZERO)
         d = {top: found if weight is None else weight}
 
@@ -130,9 +126,9 @@ class Recurrence:
         tilted: dict[int, Vector] = {}
         for i, mine in before.items():
             at(i)
-            add(t, rows, layout.frames[i].row, _cross_z(t, mine, tilted[i]))
+            add(t, rows, layout.frames[i].row, cross_z(t, mine, tilted[i]))
         for frame, row, direction in slides:
-            add(t, rows, row, t.dot(_constant(direction), at(frame)))
+            add(t, rows, row, t.dot(constant(direction), at(frame)))
         return found
 
     def _meet(self, parts: Iterable[int]) -> int:
@@ -147,14 +143,14 @@ class Recurrence:
         """Energy, and torque per motion."""
         t, layout = self.t, self.layout
         moment, load = layout.moments()
-        parts = {frame: _constant(h) for frame, h in moment.items()}
+        parts = {frame: constant(h) for frame, h in moment.items()}
         slides = []
         for o, step in enumerate(layout.origins):
             if step.slide is not None and load[o]:
                 h = load[o] * step.slide
                 slides.append((step.frame, step.row, h))
-                parts[step.frame] = _plus(t, parts.get(step.frame, ZERO), self._along(step.row, h))
-        weight = _constant(-layout.gravity)
+                parts[step.frame] = plus(t, parts.get(step.frame, ZERO), self._along(step.row, h))
+        weight = constant(-layout.gravity)
         rows: dict[int, Value] = {}
         return t.dot(weight, self._couple(parts, slides, weight, rows)), rows
 
@@ -192,16 +188,16 @@ class Recurrence:
             slides: list[tuple[int, int, Array]] = []
             (k_a, X_a, o_a, p_a), (k_b, X_b, o_b, p_b) = self._ends(spring)
             for scale, frame, p in ((k_a, X_a, p_a), (k_b, X_b, p_b)):
-                parts[frame] = _plus(t, parts.get(frame, ZERO), _constant(scale * p))
+                parts[frame] = plus(t, parts.get(frame, ZERO), constant(scale * p))
             path_a, path_b = layout.path(o_a), layout.path(o_b)
             for scale, path, other in ((k_a, path_a, path_b), (k_b, path_b, path_a)):
                 for o in (o for o in path if o not in other):
                     step = layout.origins[o]
-                    moved = _constant(scale * step.step)
+                    moved = constant(scale * step.step)
                     if step.slide is not None:
-                        moved = _plus(t, moved, self._along(step.row, scale * step.slide))
+                        moved = plus(t, moved, self._along(step.row, scale * step.slide))
                         slides.append((step.frame, step.row, scale * step.slide))
-                    parts[step.frame] = _plus(t, parts.get(step.frame, ZERO), moved)
+                    parts[step.frame] = plus(t, parts.get(step.frame, ZERO), moved)
             rows: dict[int, Value] = {}
             length, energy, share = self._law(spring, self._couple(parts, slides, None, rows))
             lengths.append(length)
@@ -215,41 +211,41 @@ class Recurrence:
         axes = self._axes()
         steps, p = [ZERO], [ZERO]
         for step in layout.origins[1:]:
-            local = _constant(step.step)
+            local = constant(step.step)
             if step.slide is not None:
-                local = _plus(t, local, self._along(step.row, step.slide))
+                local = plus(t, local, self._along(step.row, step.slide))
             steps.append(self._in_world(axes[step.frame], local))
-            p.append(_plus(t, p[step.parent], steps[-1]))
+            p.append(plus(t, p[step.parent], steps[-1]))
         force: dict[int, Vector] = {}  # on each origin
         moment: dict[int, Vector] = {}  # on each frame
         lengths, energies, rows = [], [], {}
         for spring in self.tree.mechanism.springs:
             ends = self._ends(spring)
             k = sqrt(spring.stiffness)
-            arms = [self._in_world(axes[frame], _constant(k * point)) for _, frame, _, point in ends]
+            arms = [self._in_world(axes[frame], constant(k * point)) for _, frame, _, point in ends]
             (_, X_a, o_a, _), (_, X_b, o_b, _) = ends
-            between = tuple(t.mul(k, t.sub(b, a)) for a, b in zip(p[o_a], p[o_b], strict=True))
-            d = _plus(t, between, _minus(t, arms[1], arms[0]))
+            between = scaled(t, k, minus(t, p[o_b], p[o_a]))
+            d = plus(t, between, minus(t, arms[1], arms[0]))
             length, energy, share = self._law(spring, d)
             lengths.append(length)
             energies.append(energy)
-            f: Vector = tuple(t.mul(share, x) for x in d)  # type: ignore[assignment]
+            f = scaled(t, share, d)
             for sign, frame, origin, arm in ((-1.0, X_a, o_a, arms[0]), (1.0, X_b, o_b, arms[1])):
-                mine = _scaled(t, sign, f)
-                moment[frame] = _plus(t, moment.get(frame, ZERO), _cross(t, arm, mine))
-                force[origin] = _plus(t, force.get(origin, ZERO), _scaled(t, k, mine))
+                mine = scaled(t, sign, f)
+                moment[frame] = plus(t, moment.get(frame, ZERO), cross(t, arm, mine))
+                force[origin] = plus(t, force.get(origin, ZERO), scaled(t, k, mine))
         for o in range(len(layout.origins) - 1, 0, -1):
             if o in force:
                 step, f = layout.origins[o], force[o]
-                force[step.parent] = _plus(t, force.get(step.parent, ZERO), f)
-                moment[step.frame] = _plus(t, moment.get(step.frame, ZERO), _cross(t, steps[o], f))
+                force[step.parent] = plus(t, force.get(step.parent, ZERO), f)
+                moment[step.frame] = plus(t, moment.get(step.frame, ZERO), cross(t, steps[o], f))
                 if step.slide is not None:
-                    add(t, rows, step.row, t.dot(self._in_world(axes[step.frame], _constant(step.slide)), f))
+                    add(t, rows, step.row, t.dot(self._in_world(axes[step.frame], constant(step.slide)), f))
         for i in range(len(layout.frames) - 1, 0, -1):
             if i in moment:
                 frame = layout.frames[i]
                 add(t, rows, frame.row, t.dot([row[2] for row in axes[i]], moment[i]))
-                moment[frame.base] = _plus(t, moment.get(frame.base, ZERO), moment[i])
+                moment[frame.base] = plus(t, moment.get(frame.base, ZERO), moment[i])
         return lengths, energies, rows
 
     def _axes(self) -> list[tuple[Vector, Vector, Vector]]:
@@ -263,55 +259,3 @@ class Recurrence:
     def _in_world(self, axes: tuple[Vector, Vector, Vector], v: Vector) -> Vector:
         x, y, z = (self.t.dot(row, v) for row in axes)
         return x, y, z
-
-
-def add(t: Trace, rows: dict[int, Value], row: int, value: Value) -> None:
-    """``rows[row] += value``."""
-    rows[row] = t.add(rows.get(row, 0.0), value)
-
-
-def _constant(v: Array) -> Vector:
-    x, y, z = (float(a) for a in v)
-    return x, y, z
-
-
-def _times(t: Trace, a: tuple[Value, Value], turn: Turn) -> tuple[Value, Value]:
-    """(cos, sin) of the sum of two angles."""
-    c, s = a
-    return t.sub(t.mul(c, turn.c), t.mul(s, turn.s)), t.add(t.mul(s, turn.c), t.mul(c, turn.s))
-
-
-def _about_z(t: Trace, turn: tuple[Value, Value], v: Vector) -> Vector:
-    (c, s), (x, y, z) = turn, v
-    return t.sub(t.mul(c, x), t.mul(s, y)), t.add(t.mul(s, x), t.mul(c, y)), z
-
-
-def _about_x(t: Trace, turn: Turn, v: Vector) -> Vector:
-    (c, s), (x, y, z) = (turn.c, turn.s), v
-    return x, t.sub(t.mul(c, y), t.mul(s, z)), t.add(t.mul(s, y), t.mul(c, z))
-
-
-def _plus(t: Trace, a: Vector, b: Vector) -> Vector:
-    x, y, z = (t.add(u, v) for u, v in zip(a, b, strict=True))
-    return x, y, z
-
-
-def _minus(t: Trace, a: Vector, b: Vector) -> Vector:
-    return _plus(t, a, _scaled(t, -1.0, b))
-
-
-def _scaled(t: Trace, factor: float, a: Vector) -> Vector:
-    x, y, z = (t.mul(factor, u) for u in a)
-    return x, y, z
-
-
-def _cross_z(t: Trace, a: Vector, b: Vector) -> Value:
-    return t.sub(t.mul(a[0], b[1]), t.mul(a[1], b[0]))
-
-
-def _cross(t: Trace, a: Vector, b: Vector) -> Vector:
-    return (
-        t.sub(t.mul(a[1], b[2]), t.mul(a[2], b[1])),
-        t.sub(t.mul(a[2], b[0]), t.mul(a[0], b[2])),
-        _cross_z(t, a, b),
-    )

@@ -135,7 +135,7 @@ class Program:
         k, m: (operations,) constants.
         registers: how many there are.
         outputs: (outputs,) registers, -1 for a constant; sign: (outputs,) what each is multiplied by, or the constant.
-        inputs: (number,) the number of rows read.
+        inputs: the number of rows read.
     """
 
     code: Integers
@@ -171,7 +171,9 @@ class _Emitter:
             if node not in seen:
                 seen.add(node)
                 stack.extend(self._operands(node))
-        self.live = sorted(seen)
+        inputs = {node for node, key in enumerate(nodes) if key and key[0] == INPUT}
+        self.inputs = len(inputs)  # all are read, used or not: one that is no number spoils its pose
+        self.live = sorted(seen | inputs)
         self.rows: list[tuple[int, int, tuple[int, int, int], float, float]] = []
 
     def _operands(self, node: int) -> tuple[int, ...]:
@@ -263,9 +265,9 @@ class _Emitter:
             if code in (FMAK, FMSK):
                 b, c = 0, regs[1]
             rows.append((code, register[node], a, b, c, k, m))
-        code, to, a, b, c, k, m = (np.array(column) for column in zip(*rows, strict=True)) if rows else [np.zeros(0)] * 7
-        ints = [np.ascontiguousarray(column, np.int32) for column in (code, to, a, b, c)]
+        table = np.array(rows, float).reshape(-1, 7).T
+        code, to, a, b, c = (np.ascontiguousarray(column, np.int32) for column in table[:5])
+        k, m = (np.ascontiguousarray(column) for column in table[5:])
         outputs = np.array([-1 if isinstance(v, float) else register[abs(v)] for v in self.outputs], np.int32)
         sign = np.array([v if isinstance(v, float) else float(np.sign(v)) for v in self.outputs], float)
-        inputs = int(max((k for c, k in zip(code, k, strict=True) if c == INPUT), default=-1)) + 1
-        return Program(*ints, np.asarray(k, float), np.asarray(m, float), count, outputs, sign, inputs)
+        return Program(code, to, a, b, c, k, m, count, outputs, sign, self.inputs)
