@@ -15,9 +15,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...kinematics.tree import Link, Motion, Tree
+from ...rotation import skew
 from ..potential import lumped_masses
 
-SNAP = 4e-16  # entries of rotations closer than this to 0 or +-1 are that
+SNAP = 1e-15  # entries of rotations closer than this to 0 or +-1 are that
 
 
 @dataclass(frozen=True)
@@ -170,9 +171,10 @@ def _euler(R: Array) -> tuple[Turn, Turn, Turn]:
     if sine <= SNAP:
         # gamma alone turns; a half turn about x, where z is reversed
         return Turn(), Turn(float(np.sign(R[2, 2])), 0.0), _turn(R[0, 0], -R[0, 1])
-    beta = _turn(R[2, 2], sine)
-    # R[:, 2] = (sin a sin b, -cos a sin b, cos b), R[2] = (sin b sin c, sin b cos c, cos b)
-    return _turn(-R[1, 2], R[0, 2]), beta, _turn(R[2, 1], R[2, 0])
+    # R[:, 2] = (sin a sin b, -cos a sin b, cos b)
+    alpha, beta = _turn(-R[1, 2], R[0, 2]), _turn(R[2, 2], sine)
+    x = _about_z(alpha).T @ R[:, 0]  # = Rx(beta) (cos c, sin c, 0): well determined however small sin b is
+    return alpha, beta, _turn(x[0], beta.c * x[1] + beta.s * x[2])
 
 
 def _turn(c: float, s: float) -> Turn:
@@ -187,7 +189,7 @@ def _snap(x: float) -> float:
 
 
 def _snapped(M: Array) -> Array:
-    found = M.copy()
+    found: Array = np.array(M, np.float64)
     near = np.rint(M) + 0.0  # no negative zero
     close = np.abs(M - near) <= SNAP
     found[close] = near[close]
@@ -204,4 +206,4 @@ def _onto(motion: Motion) -> Array:
     x = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = x - (x @ z) * z
     x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
+    return np.column_stack([x, skew(z) @ x, z])
