@@ -16,7 +16,7 @@ from . import sines, trace
 from .trace import Program
 
 BINARY = {trace.ADD: "fadd", trace.SUB: "fsub", trace.MUL: "fmul", trace.ADDK: "fadd", trace.MULK: "fmul"}
-AHEAD = 16  # vectors
+AHEAD = 256  # vectors that are fetched before their turn, all rows together: a third of the first cache
 SIGNATURE = ctypes.CFUNCTYPE(
     ctypes.c_double, *(ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64) * 2, *(ctypes.c_void_p,) * 2
 )
@@ -163,7 +163,8 @@ class _Writer:
 
     def _ahead(self, pointer: str, write: int) -> None:
         """Fetch what comes later: many rows are more streams than processors foresee."""
-        later = self._new(f"getelementptr {self.real}, ptr {pointer}, i64 {AHEAD}")
+        ahead = max(2, min(16, AHEAD // (self.program.inputs + len(self.program.outputs))))
+        later = self._new(f"getelementptr {self.real}, ptr {pointer}, i64 {ahead}")
         self.lines.append(f"  call void @llvm.prefetch.p0(ptr {later}, i32 {write}, i32 3, i32 1)")
 
     def _body(self, gather: bool) -> None:
