@@ -11,12 +11,21 @@ import equipoise as eq
 from equipoise.errors import EquipoiseWarning
 
 UR5 = Path(__file__).parents[1] / "examples" / "robots" / "ur5.urdf"
-LINKS = ("shoulder_link", "upper_arm_link", "forearm_link", "wrist_1_link", "wrist_2_link", "wrist_3_link")
-PAIRS = ((0, 1), (0, 2), (1, 2), (1, 3), (2, 3), (0, 3), (2, 4), (3, 5))  # numbers of links
+LINKS = ("world", "shoulder_link", "upper_arm_link", "forearm_link", "wrist_1_link", "wrist_2_link", "wrist_3_link")
+PAIRS = (
+    (0, 2),
+    (1, 3),
+    (2, 4),
+    (3, 5),
+    (4, 6),
+    (1, 2),
+    (2, 3),
+    (1, 4),
+)  # numbers of links; the first five use all joints
 
 
 def ur5(springs: int = 5) -> eq.Mechanism:
-    """A UR5 with zero-free-length springs over one, two and three joints."""
+    """A UR5 with zero-free-length springs, most of them over two joints: from two on no joint is idle."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EquipoiseWarning)
         bare = eq.load(UR5)

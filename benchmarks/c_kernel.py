@@ -14,7 +14,15 @@ import numpy as np
 from equipoise.energy.kernel import sines
 from equipoise.energy.kernel.trace import INPUT, MEANING, SHARE, SINCOS, SQRT, Program
 
-FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fast", "-fno-math-errno", "-shared", "-fPIC")
+FLAGS = (
+    "-O3",
+    "-march=native",
+    "-mprefer-vector-width=512",
+    "-ffp-contract=fast",
+    "-fno-math-errno",
+    "-shared",
+    "-fPIC",
+)
 HEAD = """
 #include <stdint.h>
 #include <string.h>

@@ -1,18 +1,15 @@
-"""Ratios measured in one run: `make bench`. Times in seconds depend on the machine, the ratios much less.
-
-Every figure is the median of several repetitions of the two things compared, taken in turn.
-"""
+"""Speed of the convex solve, the exact certificate and what they rest on."""
 
 from __future__ import annotations
 
-import statistics
-import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import arms
 import numpy as np
+from measure import seconds
 
 import equipoise as eq
 from equipoise.energy import FourierEnergy, Potential
@@ -22,17 +19,6 @@ from equipoise.synthesis.bound import least_rms
 from equipoise.synthesis.gram import Gram, build
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
-
-
-def seconds(*tasks: Callable[[], object], repeat: int = 7) -> list[float]:
-    """Median time of each task, the tasks taken in turn."""
-    times: list[list[float]] = [[] for _ in tasks]
-    for _ in range(repeat + 1):
-        for task, row in zip(tasks, times, strict=True):
-            start = time.perf_counter()
-            task()
-            row.append(time.perf_counter() - start)
-    return [statistics.median(row[1:]) for row in times]  # the first round warms up
 
 
 def line(what: str, first: float, second: float, names: tuple[str, str]) -> None:
@@ -52,6 +38,22 @@ def by_cvxpy(gram: Gram) -> Callable[[], object]:
         return cp.Problem(cp.Minimize(torque), limits).solve(solver=cp.CLARABEL)
 
     return solve
+
+
+def warm() -> list[tuple[str, float]]:
+    """Seconds of what a user waits for, once everything is loaded."""
+    warnings.simplefilter("ignore", EquipoiseWarning)
+    gram = build(Problem.of(eq.load(ROBOTS / "ur5.urdf"), span=2, radius=0.15))
+    six, eight = arms.chain(6), arms.chain(8)
+    tasks = {
+        "convex solve, UR5, span 2": lambda: least_rms(gram),
+        "check, UR5 with 5 springs": lambda: eq.check(arms.ur5(5)),
+        "exact certificate, 6 skew joints, 6 springs": lambda: FourierEnergy(six).exact,
+        "check, 6 skew joints, 6 springs": lambda: eq.check(six),
+        "exact certificate, 8 skew joints, 8 springs": lambda: FourierEnergy(eight).exact,
+        "check, 8 skew joints, 8 springs": lambda: eq.check(eight),
+    }
+    return list(zip(tasks, seconds(*tasks.values(), repeat=3), strict=True))
 
 
 def main() -> None:

@@ -45,7 +45,9 @@ def test_gradients_are_those_of_finite_differences() -> None:
             step[(slice(None), *place)] = h
             up, down = (mean_square(compressed, replace(springs, **{name: at + sign * step}))[0] for sign in (1, -1))
             slope = (up - down) / (2 * h)
-            np.testing.assert_allclose(gradient[(slice(None), *place)], slope, rtol=1e-5, atol=1e-6 * abs(gradient).max())
+            np.testing.assert_allclose(
+                gradient[(slice(None), *place)], slope, rtol=1e-5, atol=1e-6 * abs(gradient).max()
+            )
 
 
 def test_quadratic_form_and_its_gradient() -> None:
