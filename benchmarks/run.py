@@ -1,81 +1,96 @@
-"""Ratios measured in one run: `make bench`. Times in seconds depend on the machine, the ratios much less.
+"""`make bench`: speed of the kernel beside its peers, and of the solvers. Add `--write` to renew docs/speed.md.
 
-Every figure is the median of several repetitions of the two things compared, taken in turn.
+Times depend on the machine, the ratios much less.
 """
 
 from __future__ import annotations
 
-import statistics
-import time
-import warnings
-from collections.abc import Callable
-from dataclasses import replace
+import sys
 from pathlib import Path
 
-import numpy as np
+import measure
+import solving
+import speed
 
-import equipoise as eq
-from equipoise.energy import FourierEnergy, Potential
-from equipoise.errors import EquipoiseWarning
-from equipoise.synthesis import Problem
-from equipoise.synthesis.bound import least_rms
-from equipoise.synthesis.gram import Gram, build
-
-ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
+DOCS = Path(__file__).parents[1] / "docs"
 
 
-def seconds(*tasks: Callable[[], object], repeat: int = 7) -> list[float]:
-    """Median time of each task, the tasks taken in turn."""
-    times: list[list[float]] = [[] for _ in tasks]
-    for _ in range(repeat + 1):
-        for task, row in zip(tasks, times, strict=True):
-            start = time.perf_counter()
-            task()
-            row.append(time.perf_counter() - start)
-    return [statistics.median(row[1:]) for row in times]  # the first round warms up
+def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    lines = [head, ("---",) * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def line(what: str, first: float, second: float, names: tuple[str, str]) -> None:
-    print(f"{what}: {names[0]} {1e3 * first:.3g} ms, {names[1]} {1e3 * second:.3g} ms, ratio {second / first:.3g}")
+def report(streamed: int) -> tuple[str, dict[str, list[tuple[int, float]]]]:
+    """The page, and how the time grows."""
+    speed.sanity()
+    rates = speed.rates()
+    million = {(rate.name, rate.threads): rate.million for rate in rates}
+    names = list(dict.fromkeys(rate.name for rate in rates))
+    found = [(name, *(f"{million[name, t]:.3g}" if (name, t) in million else "" for t in (1, 2))) for name in names]
+    growth = speed.growth()
+    seconds, memory = speed.streaming(streamed)
+    ratios = []
+    for name, aim in ((speed.PINOCCHIO, "30"), (speed.MUJOCO, "100"), (speed.C, "0.5")):
+        if (name, 1) in million:
+            shares = (f"{million[speed.GENERATED, t] / million[name, t]:.3g}" for t in (1, 2))
+            ratios.append((f"generated kernel / {name}", *shares, f"at least {aim}"))
+    both = million[speed.GENERATED, 2] / million[speed.GENERATED, 1]
+    ratios.append(("two threads / one", "", f"{both:.3g}", "at least 1.7"))
+    steep = f"{speed.slope(growth['joints']):.3g}"
+    ratios.append(("growth with joints, slope of the logarithms", steep, "", "at most 1.15"))
+    parts = [
+        f"UR5 with five zero-free-length springs, energy and torque, {speed.POSES:,} poses, in million poses per "
+        f"second, on {measure.machine()}:\n",
+        table(("", "1 thread", "2 threads"), found),
+        "\nRatios in the same run, and what is aimed at:\n",
+        table(("", "1 thread", "2 threads", "aim"), ratios),
+        "\nWhat one core allows, million poses per second:\n",
+        table(("limit", "estimate"), [(name, f"{value:.3g}") for name, value in speed.limits()]),
+        "\nNanoseconds per pose on one core:\n",
+        *(
+            table((what, *(f"{n:,}" for n, _ in points)), [("ns", *(f"{t:.3g}" for _, t in points))]) + "\n"
+            for what, points in growth.items()
+        ),
+        f"Streamed statistics of {streamed:,} random poses on two threads: {streamed / seconds / 1e6:.3g} million per "
+        f"second, drawing them included; {memory:.3g} MiB of memory more than a few poses take.\n",
+        table(("starting", "s"), [(what, f"{value:.3g}") for what, value in speed.starting()]),
+        "\nSolvers, once warm:\n",
+        table(("", "ms"), [(what, f"{1e3 * value:.3g}") for what, value in solving.warm()]),
+    ]
+    return "\n".join(parts), growth
 
 
-def by_cvxpy(gram: Gram) -> Callable[[], object]:
-    """The same program through a modelling language (its textbook form, same solver)."""
-    import cvxpy as cp
+def picture(rates: dict[str, list[tuple[int, float]]], path: Path) -> None:
+    """Time per pose over joints, springs and configurations."""
+    import matplotlib
 
-    def solve() -> object:
-        N = [cp.Variable((7, 7), PSD=True) for _ in gram.problem.pairs]
-        scale = 1 / np.abs(gram.Q).max()
-        w = sum(scale * Q.reshape(len(Q), -1) @ cp.reshape(M, 49, order="C") for Q, M in zip(gram.Q, N, strict=True))
-        limits = [sum(M[i, i] for i in end) <= M[3, 3] for M in N for end in ((0, 1, 2), (4, 5, 6))]
-        torque = cp.norm(cp.hstack([w + gram.d, gram.rest]))
-        return cp.Problem(cp.Minimize(torque), limits).solve(solver=cp.CLARABEL)
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
 
-    return solve
+    matplotlib.rcParams["svg.hashsalt"] = "equipoise"
+    figure, axes = plt.subplots(1, 3, figsize=(9, 3), layout="constrained", sharey=True)
+    for ax, (what, points) in zip(axes, rates.items(), strict=True):
+        x, y = zip(*points, strict=True)
+        if what == "springs":
+            ax.semilogy(x, y, "o-")
+        else:
+            ax.loglog(x, y, "o-")
+        ax.set_xlabel(what)
+        ax.grid(True, which="both", alpha=0.3)
+    axes[0].set_ylabel("ns per pose, one core")
+    figure.savefig(path, metadata={"Date": None})
 
 
 def main() -> None:
-    warnings.simplefilter("ignore", EquipoiseWarning)
-    ur5 = eq.load(ROBOTS / "ur5.urdf")
-
-    problem = Problem.of(ur5, span=2, radius=0.15)
-    few, many = (build(replace(problem, samples=count)) for count in (1_000, 100_000))
-    first, second = seconds(lambda: least_rms(few), lambda: least_rms(many))
-    line("convex solve, UR5 span 2, 11 pairs", first, second, ("1,000 samples", "100,000 samples"))
-
-    exact = build(problem)
-    first, second = seconds(lambda: least_rms(exact), by_cvxpy(exact), repeat=3)
-    line("convex solve, UR5 span 2, 11 pairs", first, second, ("direct", "through cvxpy"))
-
-    first, second = seconds(lambda: build(problem), lambda: build(replace(problem, samples=4096)), repeat=3)
-    line("compressing the problem", first, second, ("exact averages", "4,096 samples"))
-
-    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (4096, 6))
-    potential, series = Potential(ur5), FourierEnergy(ur5)
-    first, second = seconds(lambda: potential(q), lambda: [potential(x) for x in q[:128]])
-    line("energy and torque of one UR5 pose", first / 4096, second / 128, ("4,096 at once", "one by one"))
-    first, second = seconds(lambda: FourierEnergy(ur5), lambda: series.torque(q))
-    line("UR5 Fourier form", first, second, ("proof", "4,096 torques from it"))
+    page, growth = report(int(float(sys.argv[sys.argv.index("--stream") + 1])) if "--stream" in sys.argv else 10**8)
+    print(page)
+    if "--write" in sys.argv:
+        path = DOCS / "speed.md"
+        text = path.read_text()
+        mark = "<!-- measured -->\n"
+        path.write_text(text[: text.index(mark) + len(mark)] + "\n" + page + "\n")
+        picture(growth, DOCS / "images" / "speed.svg")
+    solving.main()
 
 
 if __name__ == "__main__":

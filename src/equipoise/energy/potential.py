@@ -1,9 +1,10 @@
-"""The reference: gravity and springs of any free length, summed one by one, with the analytic torque.
+"""Gravity and springs of any free length, with the analytic torque: the reference sums them one by one.
 
     U = -sum m g . p  +  sum k/2 (length - free_length)^2,      torque = dU/dq
 
 The torque is what the actuators must supply to hold the pose [N m, or N for a prismatic coordinate]; it is minus the
-generalised force of gravity and springs. A spring's mass is lumped at its ends.
+generalised force of gravity and springs. A spring's mass is lumped at its ends. Many poses of a tree are computed by
+`kernel`, whose tests compare it with the reference.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ..arrays import Array
 from ..kinematics.tree import Tree
 from ..mechanism import Mechanism
 
+FEW = 32  # poses for which writing down a program does not pay
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 
 
@@ -82,13 +84,28 @@ class Potential:
 
     def __call__(self, q: ArrayLike) -> State:
         """Energies, lengths and torques at `q`, (N, n) or (n,) for one pose (N = 1)."""
-        q = np.atleast_2d(np.asarray(q, float))
-        if q.shape[1:] != (self.tree.n,):
-            raise ValueError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
+        q = self._poses(q)
+        if len(q) < FEW or self.mechanism.loops:
+            return self.reference(q)
+        from .kernel import Kernel
+
+        parts = Kernel.of(self.mechanism).parts(q)
+        springs = 0.5 * self._stiffness * (parts.length - self._free) ** 2
+        return State(parts.gravity, springs, parts.length, parts.gravity_torque, parts.spring_torque)
+
+    def reference(self, q: ArrayLike) -> State:
+        """The same, everything summed one by one."""
+        q = self._poses(q)
         size = max(1, CHUNK_ENTRIES // (6 * max(1, self.tree.n) * len(self.tree.names)))
         parts = [self._chunk(q[i : i + size]) for i in range(0, max(1, len(q)), size)]
         fields = ("gravity", "springs", "length", "gravity_torque", "spring_torque")
         return State(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
+
+    def _poses(self, q: ArrayLike) -> Array:
+        q = np.atleast_2d(np.asarray(q, float))
+        if q.shape[1:] != (self.tree.n,):
+            raise ValueError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
+        return q
 
     def _chunk(self, q: Array) -> State:
         poses = self.tree.poses(q)

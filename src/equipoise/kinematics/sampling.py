@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -54,7 +56,7 @@ def inside(tree: Tree, q: Array, slack: float = 1e-12) -> Booleans:
     return np.asarray(((s >= tree.lower - slack) & (s <= tree.upper + slack)).all(axis=1))
 
 
-def sample(tree: Tree, count: int, seed: int = 0) -> Array:
+def sample(tree: Tree, count: int, seed: int | Sequence[int] = 0) -> Array:
     """`count` configurations (count, n), uniform over the joint ranges; the same for the same seed.
 
     Raises:

@@ -54,10 +54,10 @@ class Springs:
 
 def residual(gram: Gram, springs: Springs) -> Array:
     """(batch, rows) residual of the Gram form, as a share of the unbalanced torque, `rest` not included."""
-    return (_unit_torque(gram, springs) @ springs.k[..., None])[..., 0] + gram.d
+    return (unit_torque(gram, springs) @ springs.k[..., None])[..., 0] + gram.d
 
 
-def _unit_torque(gram: Gram, springs: Springs) -> Array:
+def unit_torque(gram: Gram, springs: Springs) -> Array:
     """(batch, rows, springs): what each spring does per unit of stiffness."""
     y = springs.y
     Qy = (gram.Q[springs.pair] @ y[:, :, None, :, None])[..., 0]
@@ -66,7 +66,7 @@ def _unit_torque(gram: Gram, springs: Springs) -> Array:
 
 def best_stiffness(gram: Gram, springs: Springs) -> Springs:
     """The same attachments with the stiffnesses that leave least (each at least a trifle of the common scale)."""
-    A = _unit_torque(gram, springs)
+    A = unit_torque(gram, springs)
     H = np.swapaxes(A, 1, 2) @ A
     ridge = 1e-9 * np.trace(H, axis1=1, axis2=2)[:, None, None] * np.eye(H.shape[1]) + 1e-300 * np.eye(H.shape[1])
     k = -np.linalg.solve(H + ridge, np.swapaxes(A, 1, 2) @ gram.d[:, None])[..., 0]
