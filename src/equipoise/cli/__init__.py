@@ -13,10 +13,10 @@ from io import TextIOWrapper
 import typer
 
 from ..errors import EquipoiseError
-from . import check, demo, design, export, reproduce  # each registers its commands, in this order of the help
+from . import check, demo, design, export, reproduce, view  # each registers its commands, in this order of the help
 from .app import app
 
-__all__ = ["app", "check", "demo", "design", "export", "main", "reproduce"]
+__all__ = ["app", "check", "demo", "design", "export", "main", "reproduce", "view"]
 
 
 def main() -> None:
