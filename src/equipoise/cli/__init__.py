@@ -24,6 +24,7 @@ from . import (  # each registers its commands, in this order of the help
     reproduce,
     simulate,
     tolerance,
+    view,
 )
 from .app import app
 
@@ -40,6 +41,7 @@ __all__ = [
     "reproduce",
     "simulate",
     "tolerance",
+    "view",
 ]
 
 

@@ -1,0 +1,158 @@
+"""The mechanism as a scene: links as capsules, joints, mass centres, coils that stretch and take a force's colour."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..arrays import Array
+from ..report import style
+from ..report.skeleton import Point, Skeleton
+from .model import Model
+from .shapes import across, capsule, coil, colour
+
+THICK = 0.032  # radius of a link, of the mechanism's size
+TURNS = 12
+FIXED = (70, 80, 92)
+JOINT, MASS, LOAD = (236, 240, 244), (20, 26, 33), (214, 122, 30)
+
+
+class Scene:
+    """Draws a `Model` with a viser scene, and keeps it up to date."""
+
+    def __init__(self, server: Any, model: Model) -> None:
+        self.server, self.model = server, model
+        self.springs: list[dict[str, Any]] = []
+        points = Skeleton.of(model.mechanism).points(model.tree.poses(model.rest[None]))[0]
+        self.size = max(float(np.ptp(points, axis=0).max()), 1e-3)
+        self.middle = (points.max(axis=0) + points.min(axis=0)) / 2
+        self.thick = THICK * self.size * (0.6 if len(model.file.bodies) > 12 else 1.0)
+        self._stage(float((points @ model.view.vertical).min()))
+        self.rebuild()
+
+    def rebuild(self) -> None:
+        """Draw everything anew: springs or the payload have changed."""
+        model, scene = self.model, self.server.scene
+        self.skeleton = Skeleton.of(model.file.with_springs(model.springs).with_masses(model.mechanism.masses))
+        self.reach = max(self._reach(), 1e-9)
+        with self.server.atomic():
+            scene.add_frame("/arm", show_axes=False)  # replaces whatever hung on it
+            names = model.tree.names
+            self.bodies = [scene.add_frame(f"/arm/{i}", show_axes=False) for i in range(len(names))]
+            self._links()
+            self._coils()
+            self.update()
+
+    def update(self) -> None:
+        """Move everything to the model's pose."""
+        poses = self.model.tree.poses(self.model.q[None])
+        force = iter(self._forces())
+        with self.server.atomic():
+            for i, frame in enumerate(self.bodies):
+                frame.wxyz, frame.position = _quaternion(poses.R[0, i]), poses.p[0, i]
+            for handle, a, b in self.rods:
+                handle.vertices = capsule(a.at(poses)[0], b.at(poses)[0], 0.5 * self.thick)[0].astype(np.float32)
+            for i, (parts, (a, b)) in enumerate(zip(self.springs, self.skeleton.springs, strict=True)):
+                start, end, on = a.at(poses)[0], b.at(poses)[0], self.model.on[i]
+                parts["coil"].visible = on
+                parts["coil"].vertices = self._wire(start, end)[0].astype(np.float32)
+                parts["coil"].color = colour(abs(next(force)) / self.reach) if on else FIXED
+                parts["ends"][0].position, parts["ends"][1].position = start, end
+
+    def world(self, point: Point) -> Array:
+        """(3,) where a point of a body is now."""
+        return point.at(self.model.tree.poses(self.model.q[None]))[0]
+
+    def local(self, body: str, place: Array) -> Array:
+        """(3,) a place in the world in the frame of `body`."""
+        poses = self.model.tree.poses(self.model.q[None])
+        i = self.model.tree.index[body]
+        return poses.R[0, i].T @ (np.asarray(place, float) - poses.p[0, i])
+
+    def _stage(self, floor: float) -> None:
+        view, scene = self.model.view, self.server.scene
+        scene.set_up_direction(view.vertical)
+        scene.configure_default_lights(True, cast_shadow=True)
+        scene.configure_environment_map("studio", environment_intensity=0.35)
+        cell = 10.0 ** np.floor(np.log10(self.size))
+        R = np.stack([*across(view.vertical), view.vertical], axis=1)
+        scene.add_grid(
+            "/floor", 40 * cell, 40 * cell, cell_size=cell, section_size=5 * cell, cell_color=(226, 231, 236),
+            section_color=(208, 215, 222), fade_distance=14 * self.size, infinite_grid=True, shadow_opacity=0.2,
+            wxyz=_quaternion(R), position=self.middle
+            + (floor - 1.5 * self.thick - float(self.middle @ view.vertical)) * view.vertical,
+        )  # fmt: skip
+        camera = self.server.initial_camera
+        away = view.normal if not view.planar else view.normal + 0.25 * view.vertical + 0.25 * view.right
+        aim = self.middle + 0.22 * self.size * view.right  # the panel covers the right of the page
+        camera.look_at = aim
+        camera.position = aim + 1.45 * self.size * away / np.linalg.norm(away)
+
+    def _links(self) -> None:
+        scene, skeleton, thick = self.server.scene, self.skeleton, self.thick
+        self.rods = []
+        for k, (bar, radius) in enumerate(
+            [(bar, thick) for bar in skeleton.bars] + [(bar, 0.35 * thick) for bar in skeleton.brackets]
+        ):
+            look = _rgb(style.BODIES[bar.body % 2]) if bar.body not in skeleton.fixed else FIXED
+            if bar.a.body == bar.b.body:
+                vertices, faces = capsule(bar.a.p, bar.b.p, radius)
+                scene.add_mesh_simple(f"/arm/{bar.body}/bar{k}", vertices, faces, color=look)
+            else:  # a sliding joint's rod
+                vertices, faces = capsule(bar.a.p, bar.b.p, radius)
+                self.rods.append((scene.add_mesh_simple(f"/arm/rod{k}", vertices, faces, color=look), bar.a, bar.b))
+        for k, link in enumerate(self.model.tree.links):
+            for motion in link.motions if link.joint.type in ("revolute", "prismatic") else ():
+                half = 1.25 * thick * motion.axis
+                vertices, faces = capsule(-half, half, 0.75 * thick)
+                scene.add_mesh_simple(f"/arm/{link.body}/joint{k}", vertices, faces, color=JOINT)
+        for k, link in enumerate(self.model.tree.links):
+            if link.joint.type in ("spherical", "parallelogram"):
+                scene.add_icosphere(f"/arm/{link.body}/ball{k}", 1.25 * thick, JOINT, subdivisions=2)
+        for k, point in enumerate(skeleton.base):
+            scene.add_icosphere(f"/arm/0/base{k}", 1.5 * thick, FIXED, position=point.p, subdivisions=2)
+        for k, body in enumerate(self.model.file.bodies):
+            if body.mass > 0:
+                scene.add_icosphere(f"/arm/{k + 1}/com", 1.12 * thick, MASS, position=body.com, subdivisions=2)
+        for k, point in enumerate(skeleton.masses):
+            scene.add_icosphere(f"/arm/{point.body}/load{k}", 2.0 * thick, LOAD, position=point.p, subdivisions=3)
+
+    def _coils(self) -> None:
+        scene, poses = self.server.scene, self.model.tree.poses(self.model.q[None])
+        self.springs = []
+        for i, (a, b) in enumerate(self.skeleton.springs):
+            vertices, faces = self._wire(a.at(poses)[0], b.at(poses)[0])
+            mark = _rgb(style.spring_colour(i))
+            handle = scene.add_mesh_simple(f"/arm/spring{i}", vertices, faces, color=mark, side="double")
+            ends = [scene.add_icosphere(f"/arm/end{i}{j}", 0.6 * self.thick, mark, subdivisions=2) for j in "ab"]
+            self.springs.append({"coil": handle, "ends": ends})
+
+    def _wire(self, a: Array, b: Array) -> tuple[Array, Any]:
+        return coil(a, b, 0.85 * self.thick, 0.19 * self.thick, TURNS)
+
+    def _forces(self) -> Array:
+        """Force of each spring that is on, 0 for the others [N]."""
+        lengths, found = iter(self.model.state.length[0]), []
+        for spring, on in zip(self.model.springs, self.model.on, strict=True):
+            found.append(spring.stiffness * (float(next(lengths)) - spring.free_length) if on else 0.0)
+        return np.array(found)
+
+    def _reach(self) -> float:
+        """The largest force of any spring over the random poses [N]."""
+        springs = self.model.mechanism.springs
+        if not springs:
+            return 1.0
+        length = self.model.lengths()
+        force = [s.stiffness * np.abs(length[:, i] - s.free_length).max() for i, s in enumerate(springs)]
+        return float(max(force))
+
+
+def _rgb(text: str) -> tuple[int, int, int]:
+    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+def _quaternion(R: Array) -> Array:
+    """(4,) w, x, y, z of the rotation matrix `R` (3, 3)."""
+    return Rotation.from_matrix(R).as_quat(scalar_first=True)

@@ -1,0 +1,90 @@
+"""Runs the viewer: a page on this machine, or on another address with a warning."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Any
+
+from ..errors import EquipoiseWarning, Fault, InputError
+from ..io import check_savable
+from ..mechanism import Mechanism
+
+HOST, PORT = "127.0.0.1", 8080
+LOCAL = "localhost"
+
+
+class Viewer:
+    """A running viewer; `close` ends it.
+
+    Attributes:
+        model, scene, panel: its parts.
+        url: of the page.
+    """
+
+    def __init__(
+        self, mechanism: Mechanism, output: str | os.PathLike[str], *, host: str = HOST, port: int = PORT
+    ) -> None:
+        """Start it.
+
+        Args:
+            output: the YAML file that the page's button saves to: nothing else is ever written.
+            port: the next free one is taken where it is in use.
+
+        Raises:
+            InputError: viser is not installed, `output` cannot be written, or the mechanism's loops cannot be closed.
+        """
+        viser = load_viser()
+        check_savable(output)
+        if not loopback(host):
+            warnings.warn(
+                f"the viewer listens on {host}: whoever reaches this address can change the design and save it",
+                EquipoiseWarning,
+                stacklevel=2,
+            )
+        from .model import Model
+        from .panel import Panel
+        from .scene import Scene
+
+        self.model = Model(mechanism)
+        self.server = viser.ViserServer(host=host, port=port, label=mechanism.name, verbose=False)
+        self.server.gui.configure_theme(
+            control_width="large", show_logo=False, show_share_button=False, brand_color=(0, 92, 150)
+        )
+        self.scene = Scene(self.server, self.model)
+        self.panel = Panel(self.server, self.model, self.scene, Path(output))
+        address = host if ":" not in host else f"[{host}]"
+        self.url = f"http://{address}:{self.server.get_port()}"
+
+    def close(self) -> None:
+        self.panel.playing = False
+        self.server.stop()
+
+
+def loopback(host: str) -> bool:
+    """Whether only this machine reaches the address.
+
+    Raises:
+        InputError: it is neither an IP address nor localhost.
+    """
+    if host == LOCAL:
+        return True
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        raise InputError(Fault(("--host",), f"expected an IP address, found '{host}'", (HOST, LOCAL))) from None
+
+
+def load_viser() -> Any:
+    """The package viser.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    try:
+        import viser
+    except ImportError:
+        raise InputError("the viewer needs viser: pip install 'equipoise[view]'") from None
+    return viser
