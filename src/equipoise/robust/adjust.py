@@ -1,9 +1,9 @@
 """What to move when the payload changes: attachments or preloads, how far, and the energy that it takes.
 
-The torque of a zero-free-length spring is affine in either of its attachments, and every spring's in its free length. So
-a set of these, one for each spring at most, is found by one linear least-squares problem over the poses, its shortest
-solution; with a free length Newton's method repeats it. All sets of few springs are tried: the first that keeps the
-balance is the fewest springs that can, and of those it is the one that moves least.
+The torque of a zero-free-length spring is affine in either of its attachments, and every spring's in its free length.
+So a set of these, one for each spring at most, is found by one linear least-squares problem over the poses, its
+shortest solution; with a free length Newton's method repeats it. All sets of few springs are tried: the first that
+keeps the balance is the fewest springs that can, and of those it is the one that moves least.
 """
 
 from __future__ import annotations
@@ -240,7 +240,7 @@ class _Problem:
         """The set to move, by the torques' derivatives."""
         columns = self._columns(self.mechanism, handles)
         every = np.concatenate([*columns, self.low[:, None], self.high[:, None]], axis=1)
-        R = np.linalg.qr(every, mode="r")  # as many rows as columns say the same as all poses do
+        R = np.linalg.qr(every)[1]  # as many rows as columns say the same as all poses do
         width = np.cumsum([0, *(c.shape[1] for c in columns)])
         best: tuple[tuple[float, float], tuple[Handle, ...]] | None = None
         for chosen in _sets(handles):
