@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import zoo
 from robots import lee_chen_springs, robot
-from test_clearance import with_post
 
 import equipoise as eq
 from equipoise.clearance import Room, clearance
@@ -18,8 +17,8 @@ from equipoise.synthesis.free_length import ordinary
 
 
 def near_post(distance: float = 0.01) -> eq.Mechanism:
-    """A 20 mm spring in the plane of the pendulum, which a 20 mm post at `distance` from that plane is in the way of."""
-    m = with_post()
+    """A 20 mm spring in the plane of the pendulum; a 20 mm post at `distance` from that plane is in its way."""
+    m = zoo.with_post()
     return replace(m, capsules=(Capsule("post", "stand", (0.05, distance, -1.0), (0.05, distance, 1.0), 0.01),))
 
 

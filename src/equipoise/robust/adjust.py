@@ -223,7 +223,7 @@ class _Problem:
         left = self._torque(self.payload.on(now, mass))
         for _ in range(ROUNDS):
             J = np.concatenate(self._columns(now, handles), axis=1)
-            step = np.linalg.lstsq(J, -left, rcond=SINGULAR)[0]
+            step = np.asarray(np.linalg.lstsq(J, -left, rcond=SINGULAR)[0], float)
             for share in (1.0, 0.5, 0.25, 0.125):
                 trial = _moved(now, handles, share * step)
                 torque = self._torque(self.payload.on(trial, mass))
