@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..robust import Adjustment, Sweep, Tolerance
-from ..robust.adjust import Way
+from ..robust.moves import Way
 from .style import number
 
 LISTED = 8  # parameters that are named

@@ -8,10 +8,9 @@ keeps the balance is the fewest springs that can, and of those it is the one tha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, product
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 
@@ -25,64 +24,15 @@ from ..mechanism import Mechanism
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
 from ..synthesis.problem import Progress
+from .moves import Handle, Move, Way, What, moved, sets, value
 from .scatter import Scatter
 from .torque_map import TorqueMap
 
-What = Literal["p_a", "p_b", "free_length"]
 POSES = 200
-MOST = 3  # springs moved at once
 ROUNDS = 20
 KEPT = 1e-9  # of what the range of payload does, root mean square: less is balance
 SINGULAR = 1e-9  # of the largest: directions that do nothing
 EVERY_ATTACHMENT = Scatter(stiffness=0, attachment=1, mass=0, length=0)
-
-
-@dataclass(frozen=True)
-class Handle:
-    """What can be moved: an attachment, or the free length, which is the preload."""
-
-    spring: int
-    what: What
-
-
-@dataclass(frozen=True)
-class Move:
-    """An attachment (3,) or free length (1,) [m] of a spring at the smallest and at the largest payload."""
-
-    spring: str
-    what: What
-    low: Array
-    high: Array
-
-    @property
-    def travel(self) -> float:
-        """[m] from the one to the other."""
-        return float(np.linalg.norm(self.high - self.low))
-
-
-@dataclass(frozen=True)
-class Way:
-    """One way to follow the payload.
-
-    Attributes:
-        share: what is left at the worse end of the range, of what the range of payload itself does, root mean square.
-        work: [J] least and greatest over the workspace that goes into the springs from the smallest to the largest
-            payload; negative is given back.
-        low, high: the mechanism, without the payload, set for either.
-    """
-
-    moves: tuple[Move, ...]
-    share: float
-    work: tuple[float, float]
-    low: Mechanism
-    high: Mechanism
-
-    def to_dict(self) -> dict[str, Any]:
-        moves = [
-            {"spring": m.spring, "what": m.what, "low": m.low.tolist(), "high": m.high.tolist(), "travel": m.travel}
-            for m in self.moves
-        ]
-        return {"moves": moves, "share": self.share, "work": list(self.work)}
 
 
 @dataclass(frozen=True)
@@ -213,7 +163,7 @@ class _Problem:
             self._torque(self.payload.on(low, self.payload.low)),
             self._torque(self.payload.on(high, self.payload.high)),
         )
-        moves = tuple(Move(low.springs[h.spring].name, h.what, _value(low, h), _value(high, h)) for h in handles)
+        moves = tuple(Move(low.springs[h.spring].name, h.what, value(low, h), value(high, h)) for h in handles)
         share = max(float(np.linalg.norm(torque)) for torque in left) / self.unit
         return Way(moves, share, self._work(low, high), low, high)
 
@@ -225,7 +175,7 @@ class _Problem:
             J = np.concatenate(self._columns(now, handles), axis=1)
             step = np.asarray(np.linalg.lstsq(J, -left, rcond=SINGULAR)[0], float)
             for share in (1.0, 0.5, 0.25, 0.125):
-                trial = _moved(now, handles, share * step)
+                trial = moved(now, handles, share * step)
                 torque = self._torque(self.payload.on(trial, mass))
                 if torque @ torque < (1 - 1e-6) * (left @ left):
                     break
@@ -243,7 +193,7 @@ class _Problem:
         R = np.linalg.qr(every)[1]  # as many rows as columns say the same as all poses do
         width = np.cumsum([0, *(c.shape[1] for c in columns)])
         best: tuple[tuple[float, float], tuple[Handle, ...]] | None = None
-        for chosen in _sets(handles):
+        for chosen in sets(handles):
             own = [j for h in chosen for j in range(width[handles.index(h)], width[handles.index(h) + 1])]
             x = np.linalg.lstsq(R[:, own], -R[:, -2:], rcond=SINGULAR)[0]
             share = float(np.linalg.norm(R[:, own] @ x + R[:, -2:], axis=0).max()) / self.unit
@@ -287,27 +237,3 @@ class _Problem:
 
         least, most = climb(self.tree, both, self.q)[0]
         return float(-least), float(most)
-
-
-def _sets(handles: Sequence[Handle]) -> Iterator[tuple[Handle, ...]]:
-    """The handles, at most one of each spring and at most `MOST`, fewer first."""
-    springs = sorted({handle.spring for handle in handles})
-    for count in range(1, min(MOST, len(springs)) + 1):
-        for some in combinations(springs, count):
-            yield from product(*([h for h in handles if h.spring == i] for i in some))
-
-
-def _value(mechanism: Mechanism, handle: Handle) -> Array:
-    return np.atleast_1d(np.array(getattr(mechanism.springs[handle.spring], handle.what), float))
-
-
-def _moved(mechanism: Mechanism, handles: Sequence[Handle], step: Array) -> Mechanism:
-    """Every handle by its part of the step; a free length stays at least 0."""
-    springs, start = list(mechanism.springs), 0
-    for handle in handles:
-        value = _value(mechanism, handle)
-        new = value + step[start : start + len(value)]
-        start += len(value)
-        changed = float(max(new[0], 0.0)) if handle.what == "free_length" else tuple(new.tolist())
-        springs[handle.spring] = replace(springs[handle.spring], **{handle.what: changed})
-    return mechanism.with_springs(springs)
