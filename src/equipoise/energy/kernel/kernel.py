@@ -32,6 +32,8 @@ COSTS = {  # seconds: to start, to start for each operation, for each operation 
     "generated": (0.1, 6e-4, 5e-11),
 }
 CHUNK = 16_384  # poses taken at a time
+LINE = 64  # bytes of a cache's line, and of the longest vectors
+CACHE = 2**22  # bytes: results of more have left the caches before anybody reads them
 Real = NDArray[Any]  # double or single
 
 
@@ -117,7 +119,7 @@ class Kernel:
 
 
 class _Runs(Protocol):
-    def __call__(self, q: Real, out: Real) -> float: ...
+    def __call__(self, q: Real, out: Real, streamed: bool) -> float: ...
 
 
 class _Code:
@@ -146,12 +148,13 @@ class _Code:
         N, single = q.shape[1], q.dtype == np.float32
         self._work += N
         call = self._runner(tier or self._choice(single), single)
+        streamed = out.nbytes > CACHE
 
         def work(chunks: Iterator[int]) -> None:
             for start in chunks:
                 part = slice(start, start + CHUNK)
                 # a sine of single precision is no better than its angle, so far away is no matter
-                if not call(q[:, part], out[:, part]) <= self._far:
+                if not call(q[:, part], out[:, part], streamed) <= self._far:
                     by_numpy.run(self.program, q[:, part], out[:, part])
 
         chunks = iter(range(0, N, CHUNK))  # each thread takes the next: a slow one holds nobody up
@@ -186,12 +189,17 @@ class _Code:
 
             return Generated(program, single)
         if tier == "generic":
-            return lambda q, out: generic.run(program, q, out)
+            return lambda q, out, streamed: generic.run(program, q, out)
         if tier == "numpy":
-            return lambda q, out: by_numpy.run(program, q, out)
+            return lambda q, out, streamed: by_numpy.run(program, q, out)
         raise ValueError(f"tier '{tier}' is none of {', '.join(TIERS)}")
 
 
 def _empty(rows: int, N: int, dtype: np.dtype) -> Real:
-    """(rows, N) whose rows do not all fall on the same lines of a cache."""
-    return np.empty((rows, N + (72 - N) % 512 if N > 512 else N), dtype)[:, :N]
+    """(rows, N); long rows begin at whole lines of a cache, and not all at the same ones of it."""
+    if N <= 512:
+        return np.empty((rows, N), dtype)
+    row, line = N + (72 - N) % 512, LINE // np.dtype(dtype).itemsize
+    found = np.empty(rows * row + line, dtype)
+    skip = -found.ctypes.data % LINE // found.itemsize
+    return found[skip : skip + rows * row].reshape(rows, row)[:, :N]
