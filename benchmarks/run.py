@@ -56,6 +56,8 @@ def report(streamed: int) -> tuple[str, dict[str, list[tuple[int, float]]]]:
         table(("starting", "s"), [(what, f"{value:.3g}") for what, value in speed.starting()]),
         "\nSolvers, once warm:\n",
         table(("", "ms"), [(what, f"{1e3 * value:.3g}") for what, value in solving.warm()]),
+        "",
+        table(("", "s"), [(what, f"{value:.3g}") for what, value in solving.long()]),
     ]
     return "\n".join(parts), growth
 

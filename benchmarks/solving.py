@@ -14,6 +14,9 @@ from measure import seconds
 import equipoise as eq
 from equipoise.energy import FourierEnergy, Potential
 from equipoise.errors import EquipoiseWarning
+from equipoise.hardware.choice import choose
+from equipoise.hardware.made_up import made_up_catalogue
+from equipoise.robust import tolerance
 from equipoise.synthesis import Problem
 from equipoise.synthesis.bound import least_rms
 from equipoise.synthesis.gram import Gram, build
@@ -54,6 +57,17 @@ def warm() -> list[tuple[str, float]]:
         "check, 8 skew joints, 8 springs": lambda: eq.check(eight),
     }
     return list(zip(tasks, seconds(*tasks.values(), repeat=3), strict=True))
+
+
+def long() -> list[tuple[str, float]]:
+    """Seconds of what shows its progress."""
+    ur5 = eq.design(eq.load(ROBOTS / "ur5.urdf"), span=3, radius=0.15, shape="box", springs=3)
+    lee = eq.check(eq.load(ROBOTS.parent / "mechanisms" / "lee2014_table5a.yaml"))
+    tasks = {
+        "tolerance of UR5's design, 100,000 builds of 1,000 poses": lambda: tolerance(ur5.mechanism),
+        "proven best of 2,000 springs in stock for lee2014's arm": lambda: choose(lee, made_up_catalogue(2000)),
+    }
+    return list(zip(tasks, seconds(*tasks.values(), repeat=1), strict=True))
 
 
 def main() -> None:

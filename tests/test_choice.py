@@ -2,7 +2,6 @@
 
 import itertools
 from dataclasses import replace
-from time import process_time
 
 import numpy as np
 import pytest
@@ -91,10 +90,8 @@ def test_brute_force_finds_some_and_misses_some() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 7])  # of 7, one set is only just impossible
-def test_two_thousand_springs_in_under_a_minute(seed: int) -> None:
-    start = process_time()  # of all threads: what else runs on the machine does not count
-    found = choose(eq.check(lee_chen_springs()), made_up_catalogue(2000, seed), seconds=300)
-    assert process_time() - start < 60
+def test_two_thousand_springs_within_a_minute(seed: int) -> None:
+    found = choose(eq.check(lee_chen_springs()), made_up_catalogue(2000, seed), seconds=60)
     assert found.proven
     assert found.gap < 1e-9
     assert eq.check(found.mechanism).exact

