@@ -1,6 +1,7 @@
 """The best set of stock springs: against brute force by closed form, the proof, and a list of 2,000 springs."""
 
 import itertools
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from equipoise.hardware import Stock, choose
 from equipoise.hardware.choice import shortest
 from equipoise.hardware.made_up import made_up_catalogue
 from equipoise.hardware.movable import Movable, Travel
+from equipoise.hardware.relaxation import _solver_speaks_to_stderr
 
 R2 = R3 = 0.180
 G2, G3, G4 = ((0.5 * 0.848 + 0.848 + 1.330) * 9.81, (0.5 * 0.848 + 1.330) * 9.81, 0.060 * 1.330 * 9.81)
@@ -187,3 +189,11 @@ def test_a_ur5_keeps_its_balance_with_other_rates() -> None:
     after = eq.check(found.mechanism)
     assert found.proven
     assert after.residual.max == pytest.approx(design.balance.residual.max, rel=1e-3)
+
+
+def test_what_the_solver_prints_does_not_spoil_the_answer(capfd) -> None:
+    with _solver_speaks_to_stderr():
+        os.write(1, b"a line of the solver")  # as its compiled code does
+    print("the answer")
+    out, err = capfd.readouterr()
+    assert (out, err) == ("the answer\n", "a line of the solver")
