@@ -29,6 +29,7 @@ OF_THE_ZOO = {
 OF_PAPERS = {
     "lin2010_arm",
     "lin2010_balanced",
+    "lin2010_rssr",
     "bevel_shoulder",
     "bevel_balanced",
     "lee2014_table5a",

@@ -107,8 +107,11 @@ def test_the_printed_a_hold_where_x_points_up():
         np.testing.assert_allclose(up, (TABLE_3[i].l_CA, 0, 0), atol=1e-15)
 
 
-@pytest.mark.parametrize(("file", "mechanism"), [("lin2010_arm", arm()), ("lin2010_balanced", balanced().mechanism)])
-def test_examples(file, mechanism):
+@pytest.mark.parametrize(
+    "file", ["lin2010_arm", "lin2010_balanced", pytest.param("lin2010_rssr", marks=pytest.mark.slow)]
+)
+def test_examples(file):
+    mechanism = arm() if file == "lin2010_arm" else balanced(real=file == "lin2010_rssr").mechanism
     path: Path = FOLDER / f"{file}.yaml"
     found, expected = flat(asdict(eq.load(path))), flat(asdict(mechanism))
     found, expected = ({k: v for k, v in x.items() if not k.startswith(".provenance")} for x in (found, expected))

@@ -9,27 +9,32 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
-from loop_zoo import delta, four_bar
+from loop_zoo import delta, four_bar, spatial_parallelogram
 from random_mechanisms import random_mechanism, random_poses
 from zoo import ZOO, exact_pendulum
 
 import equipoise as eq
+from equipoise.cli.export import assembled
 from equipoise.energy.potential import Potential
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
+from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
+from equipoise.mechanism import Capsule
+
+EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 
 
 def back(m: eq.Mechanism, folder: Path) -> eq.Mechanism:
-    """Written and read; what MJCF cannot hold, the coordinates that steer loops, is given again."""
+    """Written and read."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EquipoiseWarning)
-        (folder / "model.xml").write_text(mjcf.to_text(m))
-    found = eq.load(folder / "model.xml")
-    return replace(found, independent=Tree.of(m).coordinates, assembly=m.assembly) if m.loops else found
+        (folder / "model.xml").write_text(mjcf.to_text(*assembled(m)))
+    return eq.load(folder / "model.xml")
 
 
 def assert_same(m: eq.Mechanism, n: eq.Mechanism) -> None:
@@ -55,12 +60,52 @@ def test_the_zoo_round_trip(name, tmp_path):
     assert_same(m, back(m, tmp_path))
 
 
-@pytest.mark.parametrize("m", [four_bar(), delta()], ids=["four-bar", "delta"])
+@pytest.mark.parametrize("m", [four_bar(), delta(), spatial_parallelogram()], ids=["four-bar", "delta", "spatial"])
 def test_loops_round_trip(m, tmp_path):
     n = back(m, tmp_path)
     assert len(n.loops) == len(m.loops)
-    assert all(loop.axis_a is not None for loop in n.loops)
+    assert all((loop.axis_a is None) == (known.axis_a is None) for loop, known in zip(n.loops, m.loops, strict=True))
+    assert n.independent == Tree.of(m).coordinates
+    tree = Tree.of(m)
+    assert isinstance(tree, Linkage)
+    assert dict(n.assembly) == pytest.approx(dict(zip(m.coordinates, tree.branch.assembled, strict=True)), abs=1e-12)
     assert_same(m, n)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "hexapod", "rssr", "delta_balanced", "lin2010_rssr"])
+def test_the_keyframe_is_assembled(name):
+    """What the engine's own viewer opens: at its keyframe the loops are closed, and the model is drawn."""
+    m = eq.load(EXAMPLES / f"{name}.yaml")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EquipoiseWarning)
+        model = mujoco.MjModel.from_xml_string(mjcf.to_text(*assembled(m)))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, mjcf.ASSEMBLED))
+    mujoco.mj_forward(model, data)
+    held = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+    assert held.sum() >= 3 * len(m.loops)
+    assert np.abs(data.efc_pos[held]).max() < 1e-9
+    assert model.ngeom > 0
+    assert data.ncon == 0
+    mujoco.mj_step(model, data, 50)  # and it does not burst
+    assert not any(warning.number for warning in data.warning)
+
+
+def test_friction_damping_and_capsules_round_trip(tmp_path):
+    m = exact_pendulum().mechanism
+    joints = tuple(replace(joint, damping=0.3, friction=0.2) for joint in m.joints)
+    capsules = (
+        Capsule("rod", "arm", (0.1, 0.0, 0.02), (0.4, 0.05, 0.0), 0.03),
+        Capsule("ball", "arm", (0.5, 0.0, 0.0), (0.5, 0.0, 0.0), 0.06),
+    )
+    m = replace(m, joints=joints, capsules=capsules)
+    n = back(m, tmp_path)
+    assert n.joints == m.joints
+    for found, known in zip(n.capsules, capsules, strict=True):
+        assert (found.name, found.body) == (known.name, known.body)
+        np.testing.assert_allclose(
+            [*found.p_a, *found.p_b, found.radius], [*known.p_a, *known.p_b, known.radius], atol=1e-15
+        )
 
 
 @pytest.mark.slow

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import warnings
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from loop_zoo import four_bar
 from robots import robot
-from zoo import G, exact_pendulum, lenzo_spherical, parallelogram_lamp, pendulum
+from zoo import G, exact_pendulum, lee_chen_arm, lenzo_spherical, parallelogram_lamp, pendulum
 
 import equipoise as eq
 from equipoise.errors import EquipoiseWarning, InputError
@@ -41,6 +41,13 @@ def delta() -> eq.Mechanism:
     bare = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, com_2=0.15, com_4=0.3).mechanism()
     masses = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35, "spring_7": 1.8, "spring_10": 0.5}
     return eq.design(bare, "delta", BF=0.12, CS=0.1, **masses).mechanism
+
+
+LEE = ("13,14,14", "13,14,24", "12,14,24,34", "12,14,23,24")  # of THEORY's table, for the arm of the paper's Table 4
+
+
+def lee(layout: str) -> eq.Mechanism:
+    return eq.design(lee_chen_arm().mechanism, "planar", layout=layout.split(",")).mechanism
 
 
 def with_inertia(m: eq.Mechanism) -> eq.Mechanism:
@@ -83,14 +90,15 @@ def test_the_control_is_the_spring_that_is_felt_most():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["pendulum", "lenzo", "bevel"])
+@pytest.mark.parametrize("name", ["pendulum", "lenzo", "bevel", *LEE])
 def test_exact_designs_stay(name):
     """20 poses, 10 s: below 1e-6 rad, and the control moves by more than 1 degree from every pose."""
     m = {
-        "pendulum": exact_pendulum().mechanism,
-        "lenzo": lenzo_spherical().mechanism,
-        "bevel": cho2012.balanced().mechanism,
-    }[name]
+        "pendulum": lambda: exact_pendulum().mechanism,
+        "lenzo": lambda: lenzo_spherical().mechanism,
+        "bevel": lambda: cho2012.balanced().mechanism,
+        **{layout: partial(lee, layout) for layout in LEE},
+    }[name]()
     found = release(m, seconds=10, poses=20, tolerance=1e-6, radius=SPHERE)
     assert found.stays, found.design.largest
     assert found.control is not None
@@ -113,6 +121,21 @@ def test_parallelograms_stay():
     assert found.stays
     assert found.design.constraint_error < 1e-8
     assert "equalities" in str(found.settings)
+
+
+def test_friction_holds_only_where_it_is_asked_for():
+    """1 % of the torque is missing, friction holds twice that; damping takes what moves to rest."""
+    m = with_inertia(exact_pendulum().mechanism)
+    m = m.with_springs([replace(m.springs[0], stiffness=0.99 * m.springs[0].stiffness)])
+    stiff = replace(m, joints=(replace(m.joints[0], friction=0.02 * 2.0 * G * 0.3),))
+    free, held = (release(stiff, seconds=1, poses=3, control=False, friction=friction) for friction in (False, True))
+    assert (free.design.moved > DEGREE).all()
+    assert held.design.largest < 1e-3  # the engine's friction is a little soft
+    assert "friction and damping of the joints" in str(held.settings)
+    assert "no friction or damping" in str(free.settings)
+    slow = replace(m, joints=(replace(m.joints[0], damping=5.0),))
+    slowed = release(slow, seconds=1, poses=3, control=False, friction=True)
+    assert (slowed.design.moved < 0.1 * free.design.moved).all()
 
 
 # Real linkages ------------------------------------------------------------------------------------------------------
@@ -189,6 +212,18 @@ def test_a_pendulum_driven():
     (peak, bare), (work, bare_work) = found.peak, found.work
     assert peak[0] < 0.3 * bare[0]
     assert work[0] < bare_work[0]
+
+
+def test_friction_and_damping_cost_work():
+    """Of a motion with the springs: dry friction against the rate's sign, damping in proportion to it."""
+    m = with_inertia(exact_pendulum().mechanism)
+    rubs = replace(m, joints=(replace(m.joints[0], friction=0.7, damping=0.4),))
+    t = np.linspace(0, 2, 801)
+    q = 0.3 + 0.5 * (1 - np.cos(np.pi * t))
+    rate = np.gradient(q, t)
+    more = play(rubs, t, q[:, None]).torque[:, 0] - play(m, t, q[:, None]).torque[:, 0]
+    inner = np.abs(rate) > 0.05
+    np.testing.assert_allclose(more[inner], 0.7 * np.sign(rate[inner]) + 0.4 * rate[inner], atol=1e-9)
 
 
 @pytest.mark.slow
@@ -271,10 +306,65 @@ def test_command_line_motion(run, tmp_path):
     assert picture.read_text().startswith("<?xml")
 
 
+FOLDER = PENDULUM.parent
+
+
+@pytest.mark.parametrize(("file", "paper"), [("lee2014_table5a", "lee2014"), ("lenzo_layout_b", "lenzo2017")])
+def test_command_line_motion_of_a_paper(run, file, paper):
+    options = ("--radius", "50mm", "--motion", paper, "--json")
+    code, text, _ = run("simulate", FOLDER / f"{file}.yaml", *options)
+    found = json.loads(text)
+    assert code == 0
+    assert found["energy_variation"] < 1e-9 * found["gravity_variation"]
+    assert all(joint["peak"] < joint["peak_without_springs"] for joint in found["joints"])
+
+
+def test_command_line_motion_of_a_file(run, tmp_path):
+    """Degrees and milliseconds: the same as a move."""
+    t = np.linspace(0, 2, 401)
+    degrees = 60 * (t / 2) ** 2 * (3 - t)
+    table = tmp_path / "motion.csv"
+    table.write_text(
+        "shoulder [deg], time [ms]\n" + "".join(f"{a}, {1e3 * b}\n" for a, b in zip(degrees, t, strict=True))
+    )
+    common = ("simulate", PENDULUM, "--radius", "50mm", "--json")
+    by_file = json.loads(run(*common, "--motion", table)[1])
+    by_move = json.loads(run(*common, "--move", "shoulder:0:2:0:60 deg")[1])
+    assert by_file["joints"][0]["peak"] == pytest.approx(by_move["joints"][0]["peak"], rel=1e-6)
+    assert by_file["seconds"] == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("time,knee\n0,0\n", 1, "no coordinate 'knee'"),
+        ("shoulder\n0\n", 1, "expected the columns 'time' and coordinates, each once, found shoulder"),
+        ("time,shoulder,shoulder\n0,0,0\n", 1, "each once"),
+        ("time,shoulder [kg]\n0,0\n", 1, "column 'shoulder': expected a number"),
+        ("time,shoulder\n0,0\n\n1,x\n", 4, "expected 2 numbers, found '1,x'"),
+        ("time,shoulder\n0,0\n1,nan\n", 3, "must be finite"),
+        ("time,shoulder\n0,0\n1,1,1\n", 3, "expected 2 numbers, found '1,1,1'"),
+        ("time,shoulder\n0,0\n2,1\n1,2\n", 1, "at least three times, in increasing order"),
+        ("time,shoulder\n", 1, "at least three times"),
+    ],
+)
+def test_command_line_bad_motion_files(run, tmp_path, text, line, message):
+    table = tmp_path / "motion.csv"
+    table.write_text(text)
+    code, out, error = run("simulate", PENDULUM, "--radius", "50mm", "--motion", table)
+    assert (code, out) == (2, "")
+    assert f"motion.csv:{line}" in error
+    assert message in error
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         ((), "bodies.arm.inertia"),
+        (("--motion", "lin2010"), "the arm of lin2010 has 'joint 1', 'one-link arm' has no such coordinate"),
+        (("--motion", "lin2011"), "no motion 'lin2011'; did you mean 'lin2010'"),
+        (("--motion", "absent.csv"), "absent.csv: cannot be read"),
+        (("--motion", "lin2010", "--move", "shoulder:0:2:0:1"), "is instead of --move"),
         (("--radius", "-5mm"), "--radius: must be more than 0 m"),
         (("--radius", "5kg"), "--radius: expected a number"),
         (("--move", "shoulder:0:2"), "expected JOINT:START:END:FROM:TO"),

@@ -242,6 +242,7 @@ def delta_balanced() -> Mechanism:
 
 FILES: dict[str, Callable[[], Mechanism]] = {
     "lin2010_balanced": lambda: lin2010.balanced().mechanism,
+    "lin2010_rssr": lambda: lin2010.balanced(real=True).mechanism,
     "bevel_balanced": lambda: cho2012.balanced().mechanism,
     **{f"lee2014_table5{case.letter}": partial(lee2014.balanced, case) for case in lee2014.CASES},
     **{make.__name__: make for make in (four_bar, desk_lamp, pantograph, rssr, hexapod, delta, delta_balanced)},

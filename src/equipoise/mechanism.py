@@ -18,6 +18,7 @@ WORLD = "world"
 JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 SINGLE = ("revolute", "prismatic")  # the joints with one coordinate: only these have an axis, a range, a coupling
+MOVING = (*SINGLE, "spherical")  # the joints that have coordinates of their own
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ class Joint:
             parallelogram, rpy is the child's orientation in the frame of `follows`.
         axis: of a revolute or prismatic joint, in the child frame; any length but zero.
         range: (lower, upper) [rad or m] of a revolute or prismatic joint; None is unlimited.
+        damping, friction: of a joint that moves, about each axis: torque per rate [N m s/rad or N s/m], and dry
+            friction [N m or N]. They hold and slow; balance does not count on them.
     """
 
     name: str
@@ -55,6 +58,8 @@ class Joint:
     axis: Vec3 = (1.0, 0.0, 0.0)
     range: tuple[float, float] | None = None
     follows: str | None = None
+    damping: float = 0.0
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)

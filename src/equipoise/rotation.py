@@ -65,3 +65,26 @@ def to_quaternion(R: ArrayLike) -> Array:
     K[1:, 1:] = R + R.T + (1 - np.trace(R)) * np.eye(3)
     column = K[:, np.argmax(np.diag(K))]
     return column / np.linalg.norm(column)
+
+
+def from_quaternion(quaternion: ArrayLike) -> Array:
+    """The rotation matrix (3, 3) of a quaternion (w, x, y, z) of any length but zero."""
+    q = np.asarray(quaternion, float)
+    w, x, y, z = q / np.linalg.norm(q)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def ball_angles(R: ArrayLike) -> tuple[float, float, float]:
+    """x, y, z [rad] of a spherical joint with the rotation ``Rx(x) Ry(y) Rz(z)``, (3, 3)."""
+    R = np.asarray(R, float)
+    return (
+        atan2(-R[1, 2], R[2, 2]),
+        atan2(R[0, 2], hypot(R[0, 0], R[0, 1])),
+        atan2(-R[0, 1], R[0, 0]),
+    )

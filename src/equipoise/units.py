@@ -20,6 +20,8 @@ SI_UNITS = {
     "torque": "N m",
     "time": "s",
     "force": "N",
+    "rotational damping": "N m s/rad",
+    "damping": "N s/m",
     "stress": "Pa",
     "number": "",
 }

@@ -151,6 +151,12 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
         ):
             found = ", ".join(f"{limit:g}" for limit in joint.range)
             yield Fault(("joints", i, "range"), f"must be two finite numbers, lower first, found [{found}]")
+        unit = "N" if joint.type == "prismatic" else "N m"
+        for key, value, per in (("damping", joint.damping, " s/m" if unit == "N" else " s/rad"),
+                                ("friction", joint.friction, "")):  # fmt: skip
+            yield from _at_least(("joints", i, key), value, 0, unit + per)
+            if value and joint.type in ("fixed", "parallelogram"):
+                yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
         if joint.type == "parallelogram" and joint.follows is None:
             yield Fault(("joints", i, "follows"), "missing: a parallelogram joint names the body it keeps parallel to")
         if joint.type != "parallelogram" and joint.follows is not None:

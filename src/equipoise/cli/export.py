@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import InputError
 from . import terminal
 from .app import File, app
+
+if TYPE_CHECKING:
+    from ..mechanism import Mechanism
 
 
 @app.command()
@@ -31,9 +35,23 @@ def export(
     if to not in WRITERS:
         raise InputError(Fault(("--to",), f"unknown format {nearest(to, WRITERS)}", tuple(WRITERS)))
     with terminal.shown_warnings():
-        text = import_module(f"equipoise.io.{to}").to_text(terminal.load(file))
+        mechanism = terminal.load(file)
+        write = import_module(f"equipoise.io.{to}").to_text
+        text = write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
     if output is None:
         typer.echo(text, nl=False)
     else:
         write_text(output, text)
         terminal.say(f"wrote {output}")
+
+
+def assembled(mechanism: Mechanism) -> tuple[Mechanism, dict[str, float] | None]:
+    """With the coordinates that steer its loops, and a pose in which they close."""
+    from ..kinematics import Tree
+    from ..kinematics.linkage import Linkage
+
+    tree = Tree.of(mechanism)
+    if not isinstance(tree, Linkage):
+        return mechanism, None
+    pose = dict(zip(tree.open.coordinates, tree.branch.assembled.tolist(), strict=True))
+    return replace(mechanism, independent=tree.coordinates), pose

@@ -12,10 +12,8 @@ from . import terminal
 from .app import File, Json, app
 
 if TYPE_CHECKING:
-    from ..kinematics.motion import Move
     from ..mechanism import Mechanism
-
-FRAMES = 401  # of a motion
+    from . import motions
 
 
 @app.command()
@@ -31,9 +29,20 @@ def simulate(
         str | None, typer.Option(help="of uniform spheres for bodies without an inertia (without it: an error)")
     ] = None,
     control: Annotated[bool, typer.Option(help="the same again with one spring 1 % soft: that must move")] = True,
+    friction: Annotated[
+        bool, typer.Option("--friction", help="with the joints' friction and damping (default: released without)")
+    ] = False,
     move: Annotated[
         list[str] | None,
         typer.Option(metavar="JOINT:START:END:FROM:TO", help="drive it instead: cubics in time; may be repeated"),
+    ] = None,
+    motion: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PAPER|FILE.csv",
+            help="drive it through lin2010's, lee2014's or lenzo2017's motion, or a table with the column 'time' and "
+            "one for each coordinate that moves, such as 'elbow [deg]'",
+        ),
     ] = None,
     plot: Annotated[Path | None, typer.Option(help="of the energies of a motion: .svg, .png or .pdf")] = None,
     json: Json = False,
@@ -44,16 +53,24 @@ def simulate(
 
     Example: [bold]equipoise simulate ur5-balanced.yaml --seconds 10[/bold]
     Example: [bold]equipoise simulate arm.yaml --move "joint 1:0:2:0:60 deg"[/bold]
+    Example: [bold]equipoise simulate lin2010_balanced.yaml --radius 50mm --motion lin2010 --plot motion.svg[/bold]
     """
     from . import options
 
     size = None if radius is None else options.positive_length(radius, "--radius")
     mechanism = terminal.load(file)
-    if move:
-        _drive(mechanism, move, size, plot, json)
+    if move or motion is not None:
+        from ..kinematics import Tree
+        from . import motions
+
+        if move and motion is not None:
+            raise InputError(Fault(("--motion",), "is instead of --move: give one of them"))
+        tree = Tree.of(mechanism)
+        driven = motions.of_moves(move or [], tree) if motion is None else motions.named(motion, tree)
+        _drive(mechanism, driven, size, plot, json)
         return
     if plot is not None:
-        raise InputError(Fault(("--plot",), "is of a motion: give it with --move"))
+        raise InputError(Fault(("--plot",), "is of a motion: give it with --move or --motion"))
     from ..report.simulation import release_lines
     from ..simulate import release
 
@@ -61,7 +78,7 @@ def simulate(
     with terminal.progress_bar("simulating") as report:
         found = release(
             mechanism, seconds=seconds, poses=poses, seed=seed, tolerance=limit, radius=size, control=control,
-            progress=report,
+            friction=friction, progress=report,
         )  # fmt: skip
     if json:
         terminal.print_json(found.to_dict())
@@ -70,19 +87,11 @@ def simulate(
     raise typer.Exit(0 if found.stays else 1)
 
 
-def _drive(mechanism: Mechanism, moves: list[str], radius: float | None, plot: Path | None, json: bool) -> None:
-    import numpy as np
-
-    from ..kinematics import Tree
-    from ..kinematics.motion import follow
+def _drive(mechanism: Mechanism, motion: motions.Motion, radius: float | None, plot: Path | None, json: bool) -> None:
     from ..report.simulation import playback_lines, playback_plot
     from ..simulate import play
 
-    tree = Tree.of(mechanism)
-    turns = dict(zip(tree.coordinates, tree.turns.tolist(), strict=True))
-    found = sorted((_move(text, turns) for text in moves), key=lambda one: one.start)
-    time = np.linspace(min(one.start for one in found), max(one.end for one in found), FRAMES)
-    played = play(mechanism, time, follow(tree.coordinates, found, time), radius)
+    played = play(mechanism, *motion, radius)
     if json:
         terminal.print_json(played.to_dict())
     else:
@@ -92,22 +101,3 @@ def _drive(mechanism: Mechanism, moves: list[str], radius: float | None, plot: P
 
         save_plot(playback_plot(played), plot)
         terminal.say(f"wrote {plot}")
-
-
-def _move(text: str, turns: dict[str, bool]) -> Move:
-    """``JOINT:START:END:FROM:TO``, a joint's cubic between two times."""
-    from ..errors import nearest
-    from ..kinematics.motion import Move
-    from . import options
-
-    parts = text.rsplit(":", 4)
-    if len(parts) != 5:
-        raise InputError(Fault(("--move",), f"expected JOINT:START:END:FROM:TO, found '{text}'"))
-    name = parts[0].strip()
-    if name not in turns:
-        raise InputError(Fault(("--move",), f"no coordinate {nearest(name, turns)}", tuple(turns)))
-    start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
-    if end <= start:
-        raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
-    first, last = (options.quantity(part, "angle" if turns[name] else "length", "--move") for part in parts[3:])
-    return Move(name, start, end, first, last)

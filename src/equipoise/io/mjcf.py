@@ -9,32 +9,39 @@ Choices, where the two differ:
 - A coupling with one term is an equality between two joints; with another number, a fixed tendon held at the offset.
 - A loop is a connect between two sites; a hinge loop has a second one, 0.1 m along the axes.
 - A locked joint (equal limits), which MuJoCo has not, is held by an equality.
-- MuJoCo wants mass and inertia on everything that moves: massless bodies are given 1e-13 kg and 1e-12 kg m^2.
-- Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero.
+- MuJoCo wants mass and inertia on everything that moves: massless bodies are given 1e-13 kg and 1e-12 kg m^2, and then
+  all joints a little armature. Neither matters to balance.
+- Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero. A
+  pose that does is the keyframe "assembled", where one is given. Which coordinates steer the loops is a custom text.
+- Links are drawn: by their capsules, or by thin ones from each body's origin to its joints. Nothing touches.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..errors import EquipoiseWarning, UnsupportedError
-from ..mechanism import WORLD, Body, Joint, Loop, Mechanism, PointMass
-from ..rotation import from_rpy, to_quaternion
+from ..errors import UnsupportedError
+from ..mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
+from ..rotation import about, from_rpy, to_quaternion
 from ..spring import Vec3
-from .lint import impossible, principal
+from .inertials import Inertials
 from .replicas import Replicas, replicas
 from .text import Names, numbers
 
-RADIUS = 0.05
-"""Of the uniform sphere that stands for a body whose inertia is not known [m]."""
 HINGE_ARM = 0.1
 """Between the two points that hold a hinge loop [m]."""
+INDEPENDENT, ASSEMBLED = "equipoise.independent", "assembled"
+"""Names of the custom text and of the keyframe."""
+THIN = 0.03
+"""Radius of a link that is drawn without a capsule of its own, as a share of the mean distance between joints."""
+ARMATURE = 1e-4
+"""As a share of the mechanism's mass times the square of the mean distance between its joints."""
 MAX_DEPTH = 400
 """Of nested bodies: MuJoCo's XML parser stops at 500 elements."""
 TYPES: dict[str, Literal["hinge", "slide", "ball"]] = {"revolute": "hinge", "prismatic": "slide", "spherical": "ball"}
@@ -51,6 +58,16 @@ class JointValue:
     type: Literal["hinge", "slide", "ball"]
     terms: tuple[tuple[str, float], ...]
     offset: float = 0.0
+
+    def qpos(self, values: Mapping[str, float]) -> list[float]:
+        """The engine's coordinates of the joint where the mechanism's have these values [rad or m]."""
+        terms = [(values[name], ratio) for name, ratio in self.terms]
+        if self.type != "ball":
+            return [self.offset + sum(value * ratio for value, ratio in terms)]
+        R = np.eye(3)
+        for axis, (angle, _) in zip(np.eye(3), terms, strict=True):
+            R = R @ about(axis, np.array([angle]))[0]
+        return to_quaternion(R).tolist()
 
 
 def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
@@ -81,10 +98,13 @@ def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     return result
 
 
-def to_text(mechanism: Mechanism) -> str:
+def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) -> str:
     """Write a mechanism as MJCF, with its springs as tendons, its point masses and the ends of heavy springs as bodies.
 
-    Gravity and masses are exact (to 1e-13 kg on massless bodies); there is no damping, friction or contact.
+    Gravity and masses are exact (to 1e-13 kg on massless bodies); there is no contact.
+
+    Args:
+        assembled: coordinate -> value [rad or m] of a pose in which the loops close, for a keyframe.
 
     Raises:
         UnsupportedError: a spherical joint lies between a parallelogram joint's parent and the body it follows.
@@ -102,7 +122,11 @@ def to_text(mechanism: Mechanism) -> str:
     )  # fmt: skip
     option = ET.SubElement(root, "option", gravity=numbers(mechanism.gravity), timestep="0.001")
     ET.SubElement(option, "flag", contact="disable")
-    ET.SubElement(ET.SubElement(root, "default"), "equality", solref="0.002 1")
+    default = ET.SubElement(root, "default")
+    ET.SubElement(default, "equality", solref="0.002 1")
+    if any(not body.mass for body in mechanism.bodies):
+        ET.SubElement(default, "joint", armature=numbers([_armature(mechanism)]))
+    ET.SubElement(default, "geom", contype="0", conaffinity="0", mass="0")
     _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
     equality, tendon = ET.Element("equality"), ET.Element("tendon")
     for spring in mechanism.springs:
@@ -112,6 +136,8 @@ def to_text(mechanism: Mechanism) -> str:
         )
         for end in ("a", "b"):
             ET.SubElement(element, "site", site=f"{spring.name}.{end}")
+    if mechanism.independent:
+        ET.SubElement(ET.SubElement(root, "custom"), "text", name=INDEPENDENT, data="\n".join(mechanism.independent))
     _couplings(equality, tendon, mechanism)
     for joint in mechanism.joints:
         if joint.range is not None and joint.range[0] == joint.range[1]:
@@ -121,8 +147,16 @@ def to_text(mechanism: Mechanism) -> str:
     for site_a, site_b in connects:
         ET.SubElement(equality, "connect", site1=site_a, site2=site_b)
     root.extend(element for element in (tendon, equality) if len(element))
+    if assembled is not None:
+        qpos = _qpos(root, joint_map(mechanism), assembled)
+        ET.SubElement(ET.SubElement(root, "keyframe"), "key", name=ASSEMBLED, qpos=numbers(qpos))
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _qpos(root: ET.Element, joints: dict[str, JointValue], values: Mapping[str, float]) -> list[float]:
+    """The engine's coordinates, in the order of its joints: that of the text."""
+    return [x for joint in root.iter("joint") if joint.get("type") for x in joints[joint.get("name", "")].qpos(values)]
 
 
 def _sites(m: Mechanism) -> tuple[dict[str, list[tuple[str, Vec3]]], list[tuple[str, str]]]:
@@ -152,6 +186,12 @@ def _along(p: Vec3, axis: Vec3) -> Vec3:
     return x, y, z
 
 
+def _armature(m: Mechanism) -> float:
+    """Inertia [kg m^2, or kg] that lets the engine turn what has none."""
+    size = float(np.mean([np.linalg.norm(joint.xyz) for joint in m.joints])) if m.joints else 0.0
+    return ARMATURE * (sum(body.mass for body in m.bodies) or 1.0) * (size or 1.0) ** 2
+
+
 def _couplings(equality: ET.Element, tendon: ET.Element, m: Mechanism) -> None:
     names = Names(spring.name for spring in m.springs)
     for coupling in m.couplings:
@@ -174,9 +214,9 @@ def _bodies(
     sites: dict[str, list[tuple[str, Vec3]]],
 ) -> None:
     """Fill the world with the tree of bodies, without recursion."""
-    inertias = _Inertias()
+    inertials = Inertials()
     bodies = {body.name: body for body in m.bodies}
-    lumps, children = _lumps(m), defaultdict(list)
+    lumps, children, shapes = _lumps(m), defaultdict(list), _shapes(m)
     for joint in m.joints:
         children[joint.parent].append(joint)
     waiting = [(WORLD, world, 0)]
@@ -186,20 +226,22 @@ def _bodies(
             raise UnsupportedError(f"MJCF cannot hold a chain of more than {MAX_DEPTH} bodies, as that to '{name}'")
         for site, position in sites[name]:
             ET.SubElement(element, "site", name=site, pos=numbers(position))
+        for shape in shapes[name]:
+            _shape(element, shape)
         for mass in lumps[name]:
             lump = ET.SubElement(element, "body", name=mass.name, pos=numbers(mass.position))
-            inertias.write(lump, Body(mass.name, mass.mass, inertia=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
+            inertials.write(lump, Body(mass.name, mass.mass, inertia=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
         for joint in children[name]:
             twin = twins.get(joint.name) or Replicas(from_rpy(joint.rpy), ())
             quat = numbers(to_quaternion(twin.R_PC))
             child = ET.SubElement(element, "body", name=joint.child, pos=numbers(joint.xyz), quat=quat)
-            inertias.write(child, bodies[joint.child])
+            inertials.write(child, bodies[joint.child])
             for hinge in twin.hinges:
                 ET.SubElement(child, "joint", name=hinge.name, type="hinge", axis=numbers(hinge.axis), limited="false")
             if joint.type in TYPES:
                 _joint(child, joint)
             waiting.append((joint.child, child, depth + 1))
-    inertias.warn()
+    inertials.warn()
 
 
 def _joint(body: ET.Element, joint: Joint) -> None:
@@ -207,9 +249,36 @@ def _joint(body: ET.Element, joint: Joint) -> None:
     if joint.type != "spherical":
         element.set("axis", numbers(joint.axis))
     limited = joint.range is not None and joint.range[0] < joint.range[1]
+    for key, value in (("damping", joint.damping), ("frictionloss", joint.friction)):
+        if value:
+            element.set(key, numbers([value]))
     element.set("limited", str(limited).lower())
     if joint.range is not None and limited:
         element.set("range", numbers(joint.range))
+
+
+def _shapes(m: Mechanism) -> dict[str, list[Capsule]]:
+    """What to draw of each body: its capsules, or lines without a name to the joints that it carries."""
+    shapes: dict[str, list[Capsule]] = defaultdict(list)
+    for capsule in m.capsules:
+        shapes[capsule.body].append(capsule)
+    drawn = {WORLD, *shapes}
+    bars = [joint for joint in m.joints if joint.parent not in drawn and any(joint.xyz)]
+    radius = THIN * float(np.mean([np.linalg.norm(joint.xyz) for joint in bars])) if bars else 0.0
+    for joint in bars:
+        shapes[joint.parent].append(Capsule("", joint.parent, (0.0, 0.0, 0.0), joint.xyz, radius))
+    return shapes
+
+
+def _shape(body: ET.Element, shape: Capsule) -> None:
+    element = ET.SubElement(body, "geom", size=numbers([shape.radius]))
+    if shape.name:
+        element.set("name", shape.name)
+    if shape.p_a == shape.p_b:
+        element.set("pos", numbers(shape.p_a))
+    else:
+        element.set("type", "capsule")
+        element.set("fromto", numbers((*shape.p_a, *shape.p_b)))
 
 
 def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:
@@ -228,39 +297,3 @@ def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:
     for mass in masses:
         lumps[mass.body].append(mass)
     return lumps
-
-
-class _Inertias:
-    """Writes inertias that MuJoCo accepts, and remembers which ones it had to make up."""
-
-    def __init__(self) -> None:
-        self.unknown: list[str] = []
-        self.impossible: list[str] = []
-
-    def write(self, element: ET.Element, body: Body) -> None:
-        if not body.mass and not any(body.inertia or ()):
-            return
-        moments, axes = principal(body)
-        if body.inertia is None:
-            self.unknown.append(body.name)
-            moments, axes = np.full(3, 0.4 * body.mass * RADIUS**2), np.eye(3)
-        elif impossible(body):
-            self.impossible.append(body.name)
-            moments, axes = np.full(3, max(float(moments.mean()), 0.0)), np.eye(3)
-        low, middle, high = np.maximum(moments, 0.0).tolist()
-        # MuJoCo allows no rounding in the triangle inequality; `impossible` has let pass no more than that
-        high = min(high, low + middle)
-        ET.SubElement(
-            element, "inertial", pos=numbers(body.com), quat=numbers(to_quaternion(axes)), mass=numbers([body.mass]),
-            diaginertia=numbers([low, middle, high]),
-        )  # fmt: skip
-
-    def warn(self) -> None:
-        for names, what in (
-            (self.unknown, f"unknown inertia, a uniform sphere of radius {RADIUS} m was written"),
-            (self.impossible, "impossible inertia, equal moments with the same sum were written"),
-        ):
-            if names:
-                quoted = ", ".join(f"'{name}'" for name in names)
-                warnings.warn(f"bodies {quoted}: {what}; motion depends on it, balance does not", EquipoiseWarning,
-                              stacklevel=4)  # fmt: skip

@@ -6,110 +6,39 @@ What one item alone can tell is checked here; what needs the whole mechanism is 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
-from pydantic_core import PydanticCustomError
 
 from ..errors import Fault, Path, nearest
-from ..mechanism import JOINT_TYPES, SINGLE, JointType
-from ..units import SI_UNITS, to_si
+from ..mechanism import SINGLE
+from .fields import (
+    Angle,
+    Angles,
+    Direction,
+    Gravity,
+    Inertias,
+    Length,
+    Mass,
+    Number,
+    Point,
+    Stiffness,
+    Text,
+    Type,
+    held,
+    limits,
+    one_of,
+    show,
+    whole,
+)  # fmt: skip
 
 SCHEMA = 1
-DIMENSION_OF = {"revolute": "angle", "prismatic": "length"}
-"""What the coordinate of a joint measures."""
-
-
-def show(value: object) -> str:
-    """A found value in the words of the file: a list is a list, nothing is nothing."""
-    if value is None:
-        return "nothing"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return "a mapping"
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _text(value: object) -> str:
-    if isinstance(value, str):
-        return value
-    quotes = f"; put it in quotes: '{show(value)}'" if isinstance(value, (bool, int, float)) else ""
-    raise ValueError(f"expected text, found {show(value)}{quotes}")
-
-
-def _whole(value: object) -> int:
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and float(value).is_integer():
-        return int(value)
-    raise ValueError(f"expected a whole number, found {show(value)}")
 
 
 def _schema(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value == SCHEMA:
         return SCHEMA
     raise ValueError(f"this version reads schema {SCHEMA}, found {show(value)}")
-
-
-def _one_of(what: str, choices: tuple[str, ...]) -> Any:
-    def check(value: object) -> object:
-        if isinstance(value, str) and value in choices:
-            return value
-        found = nearest(value, choices) if isinstance(value, str) else show(value)
-        raise PydanticCustomError("choice", "unknown", {"message": f"no {what} {found}", "choices": choices})
-
-    return BeforeValidator(check)
-
-
-def _number(dimension: str) -> Any:
-    return BeforeValidator(partial(to_si, dimension=dimension))
-
-
-def _list_of(count: int, dimension: str) -> Any:
-    def check(value: object) -> object:
-        if isinstance(value, list) and len(value) == count:
-            return value
-        found = f"{len(value)}: {show(value)}" if isinstance(value, list) else show(value)
-        unit = f" [{SI_UNITS[dimension]}]" if SI_UNITS[dimension] else ""
-        raise ValueError(f"expected a list of {count} numbers{unit}, found {found}")
-
-    return BeforeValidator(check)
-
-
-Text = Annotated[str, BeforeValidator(_text)]
-Number = Annotated[float, _number("number")]
-Length = Annotated[float, _number("length")]
-Angle = Annotated[float, _number("angle")]
-Mass = Annotated[float, _number("mass")]
-Stiffness = Annotated[float, _number("stiffness")]
-Acceleration = Annotated[float, _number("acceleration")]
-Inertia = Annotated[float, _number("inertia")]
-Direction = Annotated[tuple[Number, Number, Number], _list_of(3, "number")]
-Point = Annotated[tuple[Length, Length, Length], _list_of(3, "length")]
-Angles = Annotated[tuple[Angle, Angle, Angle], _list_of(3, "angle")]
-Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], _list_of(3, "acceleration")]
-Inertias = Annotated[tuple[Inertia, Inertia, Inertia, Inertia, Inertia, Inertia], _list_of(6, "inertia")]
-Type = Annotated[JointType, _one_of("joint type", JOINT_TYPES)]
-
-
-def _limits(value: object, info: ValidationInfo) -> tuple[float, float] | None:
-    """A range: angles of a revolute joint, lengths of a prismatic one."""
-    joint_type = info.data.get("type")
-    if value is None or joint_type is None:  # a bad type has a fault of its own
-        return None
-    if joint_type not in SINGLE:
-        raise ValueError(f"a {joint_type} joint has no range; only {' and '.join(SINGLE)} have")
-    dimension = DIMENSION_OF[joint_type]
-    if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f"expected a list of 2 numbers [{SI_UNITS[dimension]}], lower first, found {show(value)}")
-    limits = []
-    for i, limit in enumerate(value):
-        try:
-            limits.append(to_si(limit, dimension))
-        except ValueError as error:
-            raise PydanticCustomError("element", "bad", {"message": str(error), "index": i}) from error
-    return limits[0], limits[1]
 
 
 class Item(BaseModel):
@@ -142,6 +71,8 @@ class JointItem(Item):
     axis: Direction | None = Field(default=None, validate_default=True)
     range: Any = None
     follows: Text | None = None
+    damping: Any = 0.0
+    friction: Any = 0.0
 
     @field_validator("axis")
     @classmethod
@@ -151,7 +82,8 @@ class JointItem(Item):
             raise ValueError(f"missing: a {joint_type} joint needs it")
         return (1.0, 0.0, 0.0) if value is None else value
 
-    _range = field_validator("range", mode="before")(_limits)
+    _range = field_validator("range", mode="before")(limits)
+    _held = field_validator("damping", "friction", mode="before")(held)
 
 
 class CouplingItem(Item):
@@ -204,25 +136,25 @@ class CapsuleItem(Item):
 
 class WorkspaceItem(Item):
     kind = "a workspace"
-    samples: Annotated[int, BeforeValidator(_whole)] = 4096
+    samples: Annotated[int, BeforeValidator(whole)] = 4096
 
 
 class DhRow(Item):
     kind = "a dh row"
     name: Text | None = None
-    type: Annotated[Literal["revolute", "prismatic"], _one_of("joint type for a dh row", SINGLE)] = "revolute"
+    type: Annotated[Literal["revolute", "prismatic"], one_of("joint type for a dh row", SINGLE)] = "revolute"
     a: Length
     alpha: Angle
     d: Length
     theta: Angle
     range: Any = None
 
-    _range = field_validator("range", mode="before")(_limits)
+    _range = field_validator("range", mode="before")(limits)
 
 
 class DhTable(Item):
     kind = "a dh table"
-    convention: Annotated[Literal["standard", "modified"], _one_of("convention", ("standard", "modified"))]
+    convention: Annotated[Literal["standard", "modified"], one_of("convention", ("standard", "modified"))]
     rows: list[DhRow]
 
 

@@ -1,6 +1,6 @@
 """URDF: read here, written by `urdf_write`.
 
-Only kinematics and inertia are read: visual, collision, transmission, gazebo, safety and dynamics are skipped.
+Kinematics, inertia, friction and damping are read; visual, collision, transmission, gazebo and safety are skipped.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
+from dataclasses import replace
 from math import isfinite
 
 import numpy as np
@@ -32,7 +33,8 @@ TYPES: dict[str, JointType] = {
 """URDF's joint types that are read, and ours."""
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
-_FIELDS = {"com": "inertial", "mass": "inertial", "inertia": "inertial", "range": "limit", "xyz": "origin"}
+_FIELDS = {"com": "inertial", "mass": "inertial", "inertia": "inertial", "range": "limit", "xyz": "origin",
+           "damping": "dynamics", "friction": "dynamics"}  # fmt: skip
 """Where URDF keeps a field of ours that has another name there."""
 
 
@@ -183,7 +185,11 @@ class _Reader:
         if element is not None:
             axis = self._vector(element, (*path, "axis"), "xyz", axis)
         limits = None if kind == "continuous" else self._limits(joint, path, kind)
-        return Joint(name, TYPES[kind], ends[0], ends[1], xyz, rpy, axis, limits)
+        found = Joint(name, TYPES[kind], ends[0], ends[1], xyz, rpy, axis, limits)
+        if (dynamics := joint.find("dynamics")) is None:
+            return found
+        damping, friction = (self._number(dynamics, (*path, "dynamics"), key, 0.0) for key in ("damping", "friction"))
+        return replace(found, damping=damping, friction=friction)
 
     def _type(self, joint: Element, path: Path) -> str:
         kind = joint.attributes.get("type")

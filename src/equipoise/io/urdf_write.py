@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
+from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 from ..errors import EquipoiseWarning, UnsupportedError
@@ -132,6 +133,8 @@ def _joint(robot: ET.Element, joint: Joint) -> ET.Element:
     if kind in ("revolute", "prismatic"):
         lower, upper = (numbers([limit]) for limit in joint.range or (-TRAVEL, TRAVEL))
         ET.SubElement(element, "limit", lower=lower, upper=upper, effort="0", velocity="0")
+    if joint.damping or joint.friction:
+        ET.SubElement(element, "dynamics", damping=numbers([joint.damping]), friction=numbers([joint.friction]))
     return element
 
 
@@ -142,7 +145,10 @@ def _spherical(robot: ET.Element, joint: Joint, links: Names, joints: Names) -> 
         if letter != "z":
             child = links.new(f"{joint.name}.{letter}")
             _link(robot, Body(child))
-        _joint(robot, Joint(joints.new(f"{joint.name}.{letter}"), "revolute", parent, child, xyz, rpy, axis))
+        name = joints.new(f"{joint.name}.{letter}")
+        _joint(
+            robot, replace(joint, name=name, type="revolute", parent=parent, child=child, xyz=xyz, rpy=rpy, axis=axis)
+        )
         parent, xyz, rpy = child, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 

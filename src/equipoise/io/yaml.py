@@ -14,9 +14,10 @@ from ..spring import Spring
 from ..units import to_si
 from . import MODEL_SUFFIXES, dh, load
 from .emit import to_text
+from .fields import DIMENSION_OF
 from .files import read_text
 from .located import Located, parse
-from .schema import DIMENSION_OF, SCHEMA, MechanismFile, validate
+from .schema import SCHEMA, MechanismFile, validate
 
 __all__ = ["read", "to_text"]
 _SINGULAR = {"bodies": "body", "joints": "joint", "couplings": "coupling"}

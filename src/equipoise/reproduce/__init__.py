@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from ..arrays import Array
 from ..errors import Fault, InputError, nearest
 from .record import Map, Plot, Reproduction, Row
 
@@ -16,7 +17,16 @@ PAPERS: tuple[str, ...] = (
 )
 """Keys of the papers; each names its file."""
 
-__all__ = ["PAPERS", "Map", "Plot", "Reproduction", "Row", "reproduce"]
+MOTIONS: tuple[str, ...] = ("lin2010", "lenzo2017", "lee2014")
+"""Those that drive their arm through a motion; their files have `TIMES`, `motion` and `arm`."""
+
+__all__ = ["MOTIONS", "PAPERS", "Map", "Plot", "Reproduction", "Row", "motion", "reproduce"]
+
+
+def motion(paper: str) -> tuple[Array, tuple[str, ...], Array]:
+    """A paper's motion: times (T,) [s], coordinates, and their values (T, coordinates) [rad]."""
+    module = import_module(f".{paper}", __package__)
+    return module.TIMES, module.arm().coordinates, module.motion()
 
 
 def reproduce(paper: str) -> Reproduction:

@@ -22,7 +22,7 @@ from ..io import mjcf
 from ..kinematics import Tree
 from ..kinematics.linkage import ClosedPoses
 from ..mechanism import Mechanism
-from ..rotation import about, to_quaternion
+from ..rotation import about, ball_angles, from_quaternion
 
 TIMESTEP = {False: 1e-3, True: 1e-4}  # [s] without and with equalities, which are stiff
 SOLREF = (2e-4, 1.0)  # time constant [s] (two steps, the least that is stable) and damping ratio of equalities
@@ -40,13 +40,15 @@ class Settings:
     """What the run rests on, for the report: time step [s], integrator, equalities, and made-up inertias."""
 
     timestep: float
+    held: bool  # by friction or damping
     integrator: str
     equalities: int
     armature: float  # [kg m^2, or kg of slides] the largest that joints got
     raised: tuple[str, ...]  # these joints
 
     def __str__(self) -> str:
-        text = f"time step {1e3 * self.timestep:g} ms, {self.integrator}, no damping, no contact"
+        held = "friction and damping of the joints" if self.held else "no friction or damping"
+        text = f"time step {1e3 * self.timestep:g} ms, {self.integrator}, {held}, no contact"
         if self.equalities:
             text += f"; {self.equalities} equalities, time constant {1e3 * SOLREF[0]:g} ms, impedance {SOLIMP[0]:g}"
         if self.raised:
@@ -60,6 +62,7 @@ class Engine:
 
     Args:
         radius: [m] of the uniform sphere that stands for a body with a mass and no inertia.
+        friction: with the joints' friction and damping. Without, what stays is balanced, and not held.
 
     Attributes:
         tree: our kinematics, which say where the bodies are.
@@ -70,7 +73,7 @@ class Engine:
         UnsupportedError: MJCF cannot express the mechanism.
     """
 
-    def __init__(self, mechanism: Mechanism, radius: float | None = None) -> None:
+    def __init__(self, mechanism: Mechanism, radius: float | None = None, friction: bool = False) -> None:
         try:
             import mujoco
         except ImportError:
@@ -85,6 +88,10 @@ class Engine:
             some = ", ".join(f"'{name}'" for name in unknown[:6]) + (" .." if len(unknown) > 6 else "")
             ask = f"give it in the file, or --radius {1e3 * DEFAULT_RADIUS:g}mm for uniform spheres of that size"
             raise InputError(Fault(("bodies", unknown[0], "inertia"), f"motion depends on it, of {some}: {ask}"))
+        if not friction:
+            mechanism = replace(
+                mechanism, joints=tuple(replace(j, damping=0.0, friction=0.0) for j in mechanism.joints)
+            )
         bodies = (
             replace(body, inertia=_sphere(body.mass, radius or 0.0)) if body.name in unknown else body
             for body in mechanism.bodies
@@ -104,8 +111,9 @@ class Engine:
         model.opt.disableflags |= mj.mjtDisableBit.mjDSBL_LIMIT | mj.mjtDisableBit.mjDSBL_REFSAFE
         model.opt.enableflags |= mj.mjtEnableBit.mjENBL_ENERGY
         model.eq_solref[:], model.eq_solimp[:] = SOLREF, SOLIMP
-        return Settings(model.opt.timestep, "semi-implicit Euler" if soft else "Runge-Kutta of order 4", int(model.neq),
-                        *self._armature())  # fmt: skip
+        held = bool(model.dof_damping.any() or model.dof_frictionloss.any())
+        integrator = "semi-implicit Euler" if soft else "Runge-Kutta of order 4"
+        return Settings(model.opt.timestep, held, integrator, int(model.neq), *self._armature())
 
     def _armature(self) -> tuple[float, tuple[str, ...]]:
         """Raise the inertia of joints that turn next to nothing, and of joints that follow others.
@@ -150,16 +158,8 @@ class Engine:
         values = self.values(q)
         self._mj.mj_resetData(self.model, self.data)
         for name, joint in self._joints.items():
-            terms = [values[coordinate] for coordinate, _ in joint.terms]
-            address = self.model.joint(name).qposadr[0]
-            if joint.type == "ball":
-                R = np.eye(3)
-                for axis, angle in zip(np.eye(3), terms, strict=True):
-                    R = R @ about(axis, np.array([angle]))[0]
-                self.data.qpos[address : address + 4] = to_quaternion(R)
-            else:
-                ratios = [ratio for _, ratio in joint.terms]
-                self.data.qpos[address] = joint.offset + float(np.dot(ratios, terms))
+            own, address = joint.qpos(values), self.model.joint(name).qposadr[0]
+            self.data.qpos[address : address + len(own)] = own
         self._mj.mj_forward(self.model, self.data)
 
     def values(self, q: Array) -> dict[str, float]:
@@ -218,7 +218,7 @@ class Engine:
                 continue
             # the engine turns a ball by its angular velocity in the child's frame, we by three angles in turn
             address = int(model.jnt_qposadr[j])
-            angles = _angles(self.data.qpos[address : address + 4])
+            angles = ball_angles(from_quaternion(self.data.qpos[address : address + 4]))
             R = np.eye(3)
             for axis, angle, (name, _) in zip(
                 np.eye(3)[::-1], angles[::-1], joint.terms[::-1], strict=True
@@ -268,12 +268,3 @@ class Engine:
 def _sphere(mass: float, radius: float) -> tuple[float, float, float, float, float, float]:
     moment = 0.4 * mass * radius**2
     return moment, moment, moment, 0.0, 0.0, 0.0
-
-
-def _angles(quaternion: Array) -> tuple[float, float, float]:
-    """x, y, z [rad] of ``Rx Ry Rz``."""
-    w, x, y, z = quaternion
-    a = np.arctan2(2 * (w * x - y * z), 1 - 2 * (x * x + y * y))
-    b = np.arcsin(np.clip(2 * (w * y + x * z), -1.0, 1.0))
-    c = np.arctan2(2 * (w * z - x * y), 1 - 2 * (y * y + z * z))
-    return float(a), float(b), float(c)

@@ -65,7 +65,7 @@ class Playback:
 
 
 def play(mechanism: Mechanism, time: Array, motion: Array, radius: float | None = None) -> Playback:
-    """Inverse dynamics along a motion, by the engine.
+    """Inverse dynamics along a motion, by the engine, with the friction and damping that the joints have.
 
     Args:
         time: (T,) [s], increasing; motion: (T, n) independent coordinates [rad or m], smooth.
@@ -76,7 +76,7 @@ def play(mechanism: Mechanism, time: Array, motion: Array, radius: float | None 
     """
     if len(time) < 3 or (np.diff(time) <= 0).any():
         raise InputError("a motion needs at least three times, in increasing order")
-    sprung, bare = (Engine(m, radius) for m in (mechanism, mechanism.with_springs(())))
+    sprung, bare = (Engine(m, radius, friction=True) for m in (mechanism, mechanism.with_springs(())))
     torque, total, kinetic = _torques(sprung, time, motion)
     unsprung, gravity, _ = _torques(bare, time, motion)
     springs = total - gravity
@@ -106,7 +106,8 @@ def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, 
         mj.mj_forward(model, data)
         inertial = np.zeros(model.nv)
         mj.mj_mulM(model, data, inertial, qacc)
-        torques.append(engine.at_coordinates(inertial + data.qfrc_bias - data.qfrc_passive))
+        dry = model.dof_frictionloss * np.sign(qvel)
+        torques.append(engine.at_coordinates(inertial + dry + data.qfrc_bias - data.qfrc_passive))
         potential.append(data.energy[0])
         kinetic.append(data.energy[1])
     return np.array(torques), np.array(potential), np.array(kinetic)

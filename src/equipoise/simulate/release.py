@@ -128,6 +128,7 @@ def release(
     tolerance: float = 1e-4,
     radius: float | None = None,
     control: bool = True,
+    friction: bool = False,
     progress: Progress | None = None,
 ) -> Release:
     """Let a mechanism go at rest from random poses inside its limits.
@@ -137,6 +138,7 @@ def release(
         tolerance: the drift that counts as staying [rad, or m of slides].
         radius: [m] of the uniform sphere that stands for a body without an inertia; without it that is an error.
         control: run the same with one spring soft.
+        friction: with the joints' friction and damping, which then may be what holds it.
 
     Raises:
         InputError: a bad value, an inertia is missing, or MuJoCo is not installed.
@@ -148,7 +150,7 @@ def release(
     for option, value in (("seconds", seconds), ("tolerance", tolerance)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(Fault((option,), f"must be more than 0 and finite, found {value:g}"))
-    engine = Engine(mechanism, radius)
+    engine = Engine(mechanism, radius, friction)
     if engine.tree.n == 0:
         raise InputError(f"mechanism '{mechanism.name}' has no joint that moves: nothing to let go")
     q = sample(engine.tree, poses, seed)
@@ -160,7 +162,7 @@ def release(
     soft, moved = None, None
     if runs == 2:
         soft = _felt_most(mechanism, q, radius)
-        weak = Engine(_softer(mechanism, soft), radius)
+        weak = Engine(_softer(mechanism, soft), radius, friction)
         moved = _drift(weak, q, seconds, lambda share: report(f"the same with '{soft}' soft", (1 + share) / 2))
     names = tuple(engine.model.joint(j).name for j in range(engine.model.njnt))
     tree = engine.tree

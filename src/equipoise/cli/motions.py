@@ -1,0 +1,120 @@
+"""Motions asked for on the command line: moves of single joints, a paper's motion, or a table in a file."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import Fault, InputError, nearest
+from . import options
+
+if TYPE_CHECKING:
+    from ..kinematics import Tree
+    from ..kinematics.motion import Move
+
+FRAMES = 401  # of moves
+_HEAD = re.compile(r"\s*(.*?)\s*(?:\[([^\]]*)\])?\s*")
+
+Motion = tuple[Array, Array]
+"""(T,) times [s] and (T, n) independent coordinates [rad or m]."""
+
+
+def of_moves(texts: Sequence[str], tree: Tree) -> Motion:
+    """From ``JOINT:START:END:FROM:TO``, each a cubic from rest to rest between two times."""
+    from ..kinematics.motion import follow
+
+    moves = sorted((_move(text, tree) for text in texts), key=lambda one: one.start)
+    time = np.linspace(min(one.start for one in moves), max(one.end for one in moves), FRAMES)
+    return time, _placed(tree, [one.coordinate for one in moves], follow(tree.coordinates, moves, time))
+
+
+def named(text: str, tree: Tree) -> Motion:
+    """A paper's own motion, or a CSV file: the column ``time``, and one for each coordinate that does not rest.
+
+    Raises:
+        InputError: no such paper, the file cannot be read, a bad number, or a column that is no coordinate.
+    """
+    from ..reproduce import MOTIONS, motion
+
+    if text in MOTIONS:
+        time, coordinates, q = motion(text)
+        missing = [name for name in coordinates if name not in tree.coordinates]
+        if missing:
+            message = f"the arm of {text} has '{missing[0]}', '{tree.mechanism.name}' has no such coordinate"
+            raise InputError(Fault(("--motion",), message, tree.coordinates))
+        full = np.zeros((len(time), tree.n))
+        full[:, [tree.coordinates.index(name) for name in coordinates]] = q
+        return time, _placed(tree, coordinates, full)
+    if Path(text).suffix.lower() != ".csv":
+        raise InputError(Fault(("--motion",), f"no motion {nearest(text, MOTIONS)}", (*MOTIONS, "a file .csv")))
+    return _table(Path(text), tree)
+
+
+def _placed(tree: Tree, moving: Sequence[str], q: Array) -> Array:
+    """What does not move is at rest, where loops close."""
+    return np.where([name in moving for name in tree.coordinates], q, tree.rest)
+
+
+def _move(text: str, tree: Tree) -> Move:
+    from ..kinematics.motion import Move
+
+    parts = text.rsplit(":", 4)
+    if len(parts) != 5:
+        raise InputError(Fault(("--move",), f"expected JOINT:START:END:FROM:TO, found '{text}'"))
+    name = parts[0].strip()
+    if name not in tree.coordinates:
+        raise InputError(Fault(("--move",), f"no coordinate {nearest(name, tree.coordinates)}", tree.coordinates))
+    start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
+    if end <= start:
+        raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
+    dimension = "angle" if tree.turns[tree.coordinates.index(name)] else "length"
+    first, last = (options.quantity(part, dimension, "--move") for part in parts[3:])
+    return Move(name, start, end, first, last)
+
+
+def _table(path: Path, tree: Tree) -> Motion:
+    from ..io.files import read_text
+    from ..units import to_si
+
+    lines = csv.reader(read_text(path).splitlines(), skipinitialspace=True)
+    rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+
+    def fault(line: int, message: str, choices: tuple[str, ...] = ()) -> InputError:
+        return InputError(Fault((), message, choices, file=str(path), line=line))
+
+    (at, head), *body = rows
+    columns = [_HEAD.fullmatch(cell).groups() for cell in head]  # type: ignore[union-attr]  # it matches any text
+    names, factors = [name for name, _ in columns], []
+    for name, unit in columns:
+        if name != "time" and name not in tree.coordinates:
+            raise fault(at, f"no coordinate {nearest(name, tree.coordinates)}", ("time", *tree.coordinates))
+        dimension = "time" if name == "time" else (tree.turns[tree.coordinates.index(name)] and "angle") or "length"
+        try:
+            factors.append(to_si(f"1 {unit}", dimension) if unit else 1.0)
+        except ValueError as error:
+            raise fault(at, f"column '{name}': {error}") from None
+    if "time" not in names or len(set(names)) < len(names):
+        raise fault(at, f"expected the columns 'time' and coordinates, each once, found {', '.join(names)}")
+    values = np.zeros((len(body), len(names)))
+    for i, (line, row) in enumerate(body):
+        try:
+            values[i] = [float(cell) for cell in row]
+        except ValueError:
+            raise fault(line, f"expected {len(names)} numbers, found '{','.join(row)}'") from None
+        if not np.isfinite(values[i]).all():
+            raise fault(line, "must be finite")
+    values = values * factors
+    time = values[:, names.index("time")]
+    if len(time) < 3 or (np.diff(time) <= 0).any():
+        raise fault(at, "a motion has at least three times, in increasing order")
+    q = np.zeros((len(time), tree.n))
+    for name, column in zip(names, values.T, strict=True):
+        if name != "time":
+            q[:, tree.coordinates.index(name)] = column
+    return time, _placed(tree, names, q)

@@ -1,0 +1,113 @@
+"""The values of a mechanism file: text, numbers with units, vectors. What is wrong is said in the words of the file."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo
+from pydantic_core import PydanticCustomError
+
+from ..errors import nearest
+from ..mechanism import JOINT_TYPES, MOVING, SINGLE, JointType
+from ..units import SI_UNITS, to_si
+
+DIMENSION_OF = {"revolute": "angle", "prismatic": "length"}
+"""What the coordinate of a joint measures."""
+
+
+def show(value: object) -> str:
+    """A found value in the words of the file: a list is a list, nothing is nothing."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "a mapping"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _text(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    quotes = f"; put it in quotes: '{show(value)}'" if isinstance(value, (bool, int, float)) else ""
+    raise ValueError(f"expected text, found {show(value)}{quotes}")
+
+
+def whole(value: object) -> int:
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and float(value).is_integer():
+        return int(value)
+    raise ValueError(f"expected a whole number, found {show(value)}")
+
+
+def one_of(what: str, choices: tuple[str, ...]) -> Any:
+    def check(value: object) -> object:
+        if isinstance(value, str) and value in choices:
+            return value
+        found = nearest(value, choices) if isinstance(value, str) else show(value)
+        raise PydanticCustomError("choice", "unknown", {"message": f"no {what} {found}", "choices": choices})
+
+    return BeforeValidator(check)
+
+
+def _number(dimension: str) -> Any:
+    return BeforeValidator(partial(to_si, dimension=dimension))
+
+
+def _list_of(count: int, dimension: str) -> Any:
+    def check(value: object) -> object:
+        if isinstance(value, list) and len(value) == count:
+            return value
+        found = f"{len(value)}: {show(value)}" if isinstance(value, list) else show(value)
+        unit = f" [{SI_UNITS[dimension]}]" if SI_UNITS[dimension] else ""
+        raise ValueError(f"expected a list of {count} numbers{unit}, found {found}")
+
+    return BeforeValidator(check)
+
+
+Text = Annotated[str, BeforeValidator(_text)]
+Number = Annotated[float, _number("number")]
+Length = Annotated[float, _number("length")]
+Angle = Annotated[float, _number("angle")]
+Mass = Annotated[float, _number("mass")]
+Stiffness = Annotated[float, _number("stiffness")]
+Acceleration = Annotated[float, _number("acceleration")]
+Inertia = Annotated[float, _number("inertia")]
+Direction = Annotated[tuple[Number, Number, Number], _list_of(3, "number")]
+Point = Annotated[tuple[Length, Length, Length], _list_of(3, "length")]
+Angles = Annotated[tuple[Angle, Angle, Angle], _list_of(3, "angle")]
+Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], _list_of(3, "acceleration")]
+Inertias = Annotated[tuple[Inertia, Inertia, Inertia, Inertia, Inertia, Inertia], _list_of(6, "inertia")]
+Type = Annotated[JointType, one_of("joint type", JOINT_TYPES)]
+
+
+def limits(value: object, info: ValidationInfo) -> tuple[float, float] | None:
+    """A range: angles of a revolute joint, lengths of a prismatic one."""
+    joint_type = info.data.get("type")
+    if value is None or joint_type is None:  # a bad type has a fault of its own
+        return None
+    if joint_type not in SINGLE:
+        raise ValueError(f"a {joint_type} joint has no range; only {' and '.join(SINGLE)} have")
+    dimension = DIMENSION_OF[joint_type]
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f"expected a list of 2 numbers [{SI_UNITS[dimension]}], lower first, found {show(value)}")
+    found = []
+    for i, limit in enumerate(value):
+        try:
+            found.append(to_si(limit, dimension))
+        except ValueError as error:
+            raise PydanticCustomError("element", "bad", {"message": str(error), "index": i}) from error
+    return found[0], found[1]
+
+
+def held(value: object, info: ValidationInfo) -> float:
+    """Damping or friction of a joint: of its turning or of its sliding."""
+    joint_type = info.data.get("type")
+    if joint_type is None:
+        return 0.0
+    if joint_type not in MOVING:
+        raise ValueError(f"a {joint_type} joint has no {info.field_name}; only {', '.join(MOVING)} joints have")
+    if info.field_name == "friction":
+        return to_si(value, "force" if joint_type == "prismatic" else "torque")
+    return to_si(value, "damping" if joint_type == "prismatic" else "rotational damping")
