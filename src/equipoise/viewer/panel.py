@@ -42,8 +42,7 @@ class Panel:
             self.energies = self.gui.add_html(readout.energies(model))
         with self.gui.add_folder("Design"):
             self._design()
-        with self.gui.add_folder("Springs"):
-            self.springs = SpringPanel(self)
+        self.springs = SpringPanel(self)
         self.quiet = False
 
     def show(self, rebuild: bool = False) -> None:

@@ -20,6 +20,7 @@ class SpringPanel:
 
     def __init__(self, panel: Panel) -> None:
         self.panel, self.widgets = panel, []
+        self.folder = panel.gui.add_folder("Springs")
         self.quiet = False
         self.rebuild()
 
@@ -28,6 +29,10 @@ class SpringPanel:
         for widget in self.widgets:
             widget.remove()
         self.widgets, self.handles = [], []
+        with self.folder:
+            self._widgets()
+
+    def _widgets(self) -> None:
         springs, gui = self.panel.model.springs, self.panel.gui
         if not springs:
             self.widgets = [gui.add_markdown("No springs yet: *Re-optimise* chooses three.")]
