@@ -83,7 +83,7 @@ class SpringPanel:
         self.stiffness.value = spring.stiffness
         self.here.value = self.panel.model.on[self.number]
         for point, p in zip(self.points, (spring.p_a, spring.p_b), strict=True):
-            point.value = tuple(round(1000.0 * x, 1) for x in p)
+            point.value = tuple(round(1000.0 * x, 1) + 0.0 for x in p)  # no minus zero
         self.quiet = False
 
     def _switched(self) -> None:
