@@ -1,7 +1,7 @@
 """Directives that run equipoise while the documentation is built, so that what a page shows is what the program says.
 
 - ``{run}``: command lines, one each, or Python with the argument ``python``; with what they print. They run in a folder
-  of the page, where ``examples`` is. ``:exit:`` the code that the last one ends with; ``:head:`` and ``:tail:`` how many
+  of the page, where ``examples`` is. ``:exit:`` the code that the last one ends with; ``:head:``, ``:tail:`` how many
   lines of its output are shown; ``:picture:`` a file that it made, with ``:alt:``.
 - ``{paper}``: a paper's published and computed numbers, errata and figures.
 """
