@@ -50,6 +50,7 @@ format: $(STAMP) ## put the sources into the format that lint asks for
 
 docs: $(STAMP) ## the documentation, into docs/_build/html
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Open docs/_build/html/index.html"
 
 bench: $(STAMP) ## the benchmarks
@@ -72,5 +73,5 @@ constraints: $(STAMP) ## compile constraints.txt anew from pyproject.toml (add U
 		--output-file constraints.txt pyproject.toml
 
 clean: ## remove what the other targets made
-	rm -rf .venv docs/_build build dist .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	rm -rf .venv docs/_build docs/_generated build dist .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -8,7 +8,7 @@ from docutils import nodes
 from latex2mathml.converter import convert
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "src"))
+sys.path[:0] = [str(ROOT / "src"), str(ROOT / "docs" / "_ext")]
 
 from equipoise import __version__  # noqa: E402 - from the source tree, which has to be on the path first
 
@@ -16,8 +16,8 @@ project = "equipoise"
 author = "The equipoise developers"
 release = version = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "executed"]
+exclude_patterns = ["_build", "_generated"]
 default_role = "code"  # `name` in a docstring is code
 
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]

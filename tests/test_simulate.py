@@ -226,6 +226,13 @@ def test_friction_and_damping_cost_work():
     np.testing.assert_allclose(more[inner], 0.7 * np.sign(rate[inner]) + 0.4 * rate[inner], atol=1e-9)
 
 
+def test_a_motion_that_does_not_end_at_rest():
+    """Constant rate: no inertial torque, at its ends neither, with uneven steps too."""
+    m = with_inertia(exact_pendulum().mechanism)
+    t = np.array([0.0, 0.1, 0.15, 0.3, 0.5, 0.6])
+    np.testing.assert_allclose(play(m, t, (0.2 + 3.0 * t)[:, None]).torque, 0, atol=1e-9)
+
+
 @pytest.mark.slow
 def test_the_motion_of_lin2010():
     """Eq. (26): the engine's energies are those of the paper's Fig. 9, and their sum is constant."""

@@ -43,7 +43,7 @@ def named(text: str, tree: Tree) -> Motion:
     from ..reproduce import MOTIONS, motion
 
     if text in MOTIONS:
-        time, coordinates, q = motion(text)
+        _, time, coordinates, q = motion(text)
         missing = [name for name in coordinates if name not in tree.coordinates]
         if missing:
             message = f"the arm of {text} has '{missing[0]}', '{tree.mechanism.name}' has no such coordinate"

@@ -32,7 +32,7 @@ def view(
 
     mechanism = terminal.load(file)
     with terminal.shown_warnings():
-        viewer = Viewer(mechanism, output or Path(f"{file.stem}-edited.yaml"), host=host, port=port)
+        viewer = Viewer(mechanism, output or Path(f"{file.stem}-edited.yaml"), host=host, port=port, source=file)
     typer.echo(f"{mechanism.name} is at {viewer.url} - stop with Ctrl-C")
     if open_:
         import webbrowser

@@ -23,10 +23,11 @@ MOTIONS: tuple[str, ...] = ("lin2010", "lenzo2017", "lee2014")
 __all__ = ["MOTIONS", "PAPERS", "Map", "Plot", "Reproduction", "Row", "motion", "reproduce"]
 
 
-def motion(paper: str) -> tuple[Array, tuple[str, ...], Array]:
-    """A paper's motion: times (T,) [s], coordinates, and their values (T, coordinates) [rad]."""
+def motion(paper: str) -> tuple[str, Array, tuple[str, ...], Array]:
+    """A paper's motion: the arm's name, times (T,) [s], coordinates, and their values (T, coordinates) [rad]."""
     module = import_module(f".{paper}", __package__)
-    return module.TIMES, module.arm().coordinates, module.motion()
+    arm = module.arm()
+    return arm.name, module.TIMES, arm.coordinates, module.motion()
 
 
 def reproduce(paper: str) -> Reproduction:

@@ -94,12 +94,8 @@ def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, 
     for q in motion:
         engine.place(q)
         placed.append(data.qpos.copy())
-    velocity = np.zeros((len(time), model.nv))
-    for i in range(len(time)):
-        a, b = max(i - 1, 0), min(i + 1, len(time) - 1)
-        mj.mj_differentiatePos(model, velocity[i], time[b] - time[a], placed[a], placed[b])
-    velocity[0] = velocity[-1] = 0.0 if np.allclose(motion[0], motion[1], atol=1e-12) else velocity[0]
-    acceleration = np.gradient(velocity, time, axis=0)
+    velocity = np.array([_velocity(engine, time, placed, i) for i in range(len(time))])
+    acceleration = np.gradient(velocity, time, axis=0, edge_order=2)
     torques, potential, kinetic = [], [], []
     for qpos, qvel, qacc in zip(placed, velocity, acceleration, strict=True):
         data.qpos[:], data.qvel[:] = qpos, qvel
@@ -111,3 +107,14 @@ def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, 
         potential.append(data.energy[0])
         kinetic.append(data.energy[1])
     return np.array(torques), np.array(potential), np.array(kinetic)
+
+
+def _velocity(engine: Engine, time: Array, placed: list[Array], i: int) -> Array:
+    """(nv,) of the parabola through three positions, the i-th and its neighbours: the next two at the ends."""
+    last = len(time) - 1
+    near = (1, 2) if i == 0 else (last - 1, last - 2) if i == last else (i - 1, i + 1)
+    apart = np.zeros((2, engine.model.nv))
+    for step, j in zip(apart, near, strict=True):
+        engine._mj.mj_differentiatePos(engine.model, step, 1.0, placed[i], placed[j])
+    a, b = (time[j] - time[i] for j in near)
+    return (apart[0] * b**2 - apart[1] * a**2) / (a * b * (b - a))

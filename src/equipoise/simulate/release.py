@@ -20,6 +20,7 @@ from ..validate import whole_number
 from .engine import Engine, Settings
 
 LOOKS = 100  # times that the drift is read during a run
+SECONDS = (0.01, 3600.0)  # of a run
 SOFT = 0.01  # share of its stiffness that the soft spring lacks
 MOVES = 10.0  # times the tolerance that the soft spring must move it at least
 
@@ -147,9 +148,10 @@ def release(
     """
     whole_number("poses", poses, 1)
     whole_number("seed", seed, 0)
-    for option, value in (("seconds", seconds), ("tolerance", tolerance)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(Fault((option,), f"must be more than 0 and finite, found {value:g}"))
+    if not SECONDS[0] <= seconds <= SECONDS[1]:
+        raise InputError(Fault(("seconds",), f"must be between {SECONDS[0]:g} and {SECONDS[1]:g} s, found {seconds:g}"))
+    if not (np.isfinite(tolerance) and tolerance > 0):
+        raise InputError(Fault(("tolerance",), f"must be more than 0 and finite, found {tolerance:g}"))
     engine = Engine(mechanism, radius, friction)
     if engine.tree.n == 0:
         raise InputError(f"mechanism '{mechanism.name}' has no joint that moves: nothing to let go")

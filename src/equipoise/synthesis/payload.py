@@ -80,8 +80,9 @@ class Payload:
 
     def residual(self, mechanism: Mechanism, springs: Sequence[Spring]) -> dict[str, float]:
         """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
-        ends = [check(self.on(mechanism, mass).with_springs(springs)).residual.max for mass in (self.low, self.high)]
-        return dict(zip(mechanism.coordinates, np.maximum(*ends).tolist(), strict=True))
+        ends = [check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high)]
+        most = np.maximum(*(end.residual.max for end in ends))
+        return dict(zip(ends[0].coordinates, most.tolist(), strict=True))
 
 
 def _range(masses: Sequence[float]) -> tuple[float, float]:

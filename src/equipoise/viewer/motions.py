@@ -20,8 +20,7 @@ def motions(mechanism: Mechanism, rest: Array) -> dict[str, Array]:
     """Name -> configurations (T, n) at `RATE` a second, all of them reachable; they start at `rest` (n,)."""
     tree = Tree.of(mechanism)
     found = {}
-    if (paper := _paper(mechanism, tree)) is not None:
-        found["lin2010, Table 4"] = paper
+    found |= _papers(mechanism, tree)
     if tree.n:
         found["each joint in turn"] = _in_turn(tree, rest)
         found["tour of random poses"] = _through(np.vstack([rest, sample(tree, POSES, seed=1), rest]))
@@ -29,13 +28,19 @@ def motions(mechanism: Mechanism, rest: Array) -> dict[str, Array]:
     return {name: q for name, q in reachable.items() if len(q) > 1}
 
 
-def _paper(mechanism: Mechanism, tree: Tree) -> Array | None:
-    from ..reproduce import lin2010
+def _papers(mechanism: Mechanism, tree: Tree) -> dict[str, Array]:
+    """The motions of papers whose arm this is."""
+    from ..reproduce import MOTIONS, motion
 
-    moves = lin2010.moves().values()
-    if mechanism.name != lin2010.arm().name or not {move.coordinate for move in moves} <= set(tree.coordinates):
-        return None
-    return follow(tree.coordinates, moves, np.arange(0, max(move.end for move in moves), 1 / RATE))
+    found = {}
+    for paper in MOTIONS:
+        name, time, coordinates, q = motion(paper)
+        if mechanism.name == name and set(coordinates) <= set(tree.coordinates):
+            t = np.arange(time[0], time[-1] + 0.5 / RATE, 1 / RATE)
+            found[paper] = np.tile(tree.rest, (len(t), 1))
+            for j, values in zip(coordinates, q.T, strict=True):
+                found[paper][:, tree.coordinates.index(j)] = np.interp(t, time, values)
+    return found
 
 
 def _in_turn(tree: Tree, rest: Array) -> Array:

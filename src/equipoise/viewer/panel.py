@@ -19,6 +19,7 @@ from .motions import RATE, motions
 from .scene import Scene
 from .springs import SpringPanel
 
+STEP = 0.1  # of a coordinate's slider [deg or mm]
 DRAWN = 15  # poses a second when a motion is played
 
 
@@ -41,8 +42,7 @@ class Panel:
             self.energies = self.gui.add_html(readout.energies(model))
         with self.gui.add_folder("Design"):
             self._design()
-        with self.gui.add_folder("Springs"):
-            self.springs = SpringPanel(self)
+        self.springs = SpringPanel(self)
         self.quiet = False
 
     def show(self, rebuild: bool = False) -> None:
@@ -78,12 +78,11 @@ class Panel:
         low, high = bounds(self.model.tree)
         self.sliders, units = [], self.model.tree.units
         for j, name in enumerate(self.model.tree.coordinates):
-            scale, unit, step = (180 / np.pi, "deg", 0.1) if units[j] == "rad" else (1000.0, "mm", 0.1)
-            ends = [float(scale * x) for x in (low[j], high[j])]
-            slider = self.gui.add_slider(
-                f"{name} [{unit}]", min(ends[0], scale * self.model.q[j]), max(ends[1], scale * self.model.q[j]), step,
-                float(scale * self.model.q[j]),
-            )  # fmt: skip
+            scale, unit = (180 / np.pi, "deg") if units[j] == "rad" else (1000.0, "mm")
+            now = _steps(scale * self.model.q[j])
+            least = min(_steps(scale * low[j], np.ceil), now)  # within the range, on a step
+            most = max(_steps(scale * high[j], np.floor), now, least + STEP)
+            slider = self.gui.add_slider(f"{name} [{unit}]", least, most, STEP, now)
             slider.on_update(lambda _: self._slid())
             self.sliders.append((slider, scale))
         self.motions = motions(self.model.file, self.model.rest)
@@ -111,7 +110,7 @@ class Panel:
     def _set_sliders(self) -> None:
         self.quiet = True
         for (slider, scale), value in zip(self.sliders, self.model.q, strict=True):
-            slider.value = float(scale * value)
+            slider.value = _steps(scale * value)
         self.quiet = False
 
     def _slid(self) -> None:
@@ -186,3 +185,8 @@ class Panel:
         with self.lock:
             save(self.model.saved(), self.output)
         self.say("Saved", str(self.output))
+
+
+def _steps(value: float, rounded: Callable[[float], float] = np.round) -> float:
+    """The value as a whole number of steps."""
+    return round(float(rounded(round(value / STEP, 6))) * STEP, 6)

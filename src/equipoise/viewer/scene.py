@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from ..arrays import Array
 from ..report import style
 from ..report.skeleton import Point, Skeleton
+from .meshes import Picture
 from .model import Model
 from .shapes import across, capsule, coil, colour
 
@@ -22,8 +24,8 @@ JOINT, MASS, LOAD = (236, 240, 244), (20, 26, 33), (214, 122, 30)
 class Scene:
     """Draws a `Model` with a viser scene, and keeps it up to date."""
 
-    def __init__(self, server: Any, model: Model) -> None:
-        self.server, self.model = server, model
+    def __init__(self, server: Any, model: Model, pictures: Sequence[Picture] = ()) -> None:
+        self.server, self.model, self.pictures = server, model, pictures
         self.springs: list[dict[str, Any]] = []
         points = Skeleton.of(model.mechanism).points(model.tree.poses(model.rest[None]))[0]
         self.size = max(float(np.ptp(points, axis=0).max()), 1e-3)
@@ -92,6 +94,7 @@ class Scene:
 
     def _links(self) -> None:
         scene, skeleton, thick = self.server.scene, self.skeleton, self.thick
+        self._bodies()
         self.rods = []
         for k, (bar, radius) in enumerate(
             [(bar, thick) for bar in skeleton.bars] + [(bar, 0.35 * thick) for bar in skeleton.brackets]
@@ -118,6 +121,18 @@ class Scene:
                 scene.add_icosphere(f"/arm/{k + 1}/com", 1.12 * thick, MASS, position=body.com, subdivisions=2)
         for k, point in enumerate(skeleton.masses):
             scene.add_icosphere(f"/arm/{point.body}/load{k}", 2.0 * thick, LOAD, position=point.p, subdivisions=3)
+
+    def _bodies(self) -> None:
+        """The file's own capsules, translucent as space is, and meshes."""
+        scene, index = self.server.scene, self.model.tree.index
+        for k, own in enumerate(self.model.file.capsules):
+            vertices, faces = capsule(np.array(own.p_a), np.array(own.p_b), own.radius)
+            look = _rgb(style.BODIES[index[own.body] % 2])
+            scene.add_mesh_simple(f"/arm/{index[own.body]}/capsule{k}", vertices, faces, color=look, opacity=0.35)
+        for k, picture in enumerate(self.pictures):
+            if picture.body in index:
+                name = f"/arm/{index[picture.body]}/mesh{k}"
+                scene.add_mesh_trimesh(name, picture.mesh, wxyz=_quaternion(picture.R), position=picture.position)
 
     def _coils(self) -> None:
         scene, poses = self.server.scene, self.model.tree.poses(self.model.q[None])

@@ -25,13 +25,20 @@ class Viewer:
     """
 
     def __init__(
-        self, mechanism: Mechanism, output: str | os.PathLike[str], *, host: str = HOST, port: int = PORT
+        self,
+        mechanism: Mechanism,
+        output: str | os.PathLike[str],
+        *,
+        host: str = HOST,
+        port: int = PORT,
+        source: str | os.PathLike[str] | None = None,
     ) -> None:
         """Start it.
 
         Args:
             output: the YAML file that the page's button saves to: nothing else is ever written.
             port: the next free one is taken where it is in use.
+            source: the file that the mechanism is from: the meshes that a URDF names are drawn.
 
         Raises:
             InputError: viser is not installed, `output` cannot be written, or the mechanism's loops cannot be closed.
@@ -44,6 +51,7 @@ class Viewer:
                 EquipoiseWarning,
                 stacklevel=2,
             )
+        from .meshes import pictures
         from .model import Model
         from .panel import Panel
         from .scene import Scene
@@ -53,7 +61,7 @@ class Viewer:
         self.server.gui.configure_theme(
             control_width="large", show_logo=False, show_share_button=False, brand_color=(0, 92, 150)
         )
-        self.scene = Scene(self.server, self.model)
+        self.scene = Scene(self.server, self.model, pictures(source) if source is not None else ())
         self.panel = Panel(self.server, self.model, self.scene, Path(output))
         address = host if ":" not in host else f"[{host}]"
         self.url = f"http://{address}:{self.server.get_port()}"

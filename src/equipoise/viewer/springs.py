@@ -20,6 +20,7 @@ class SpringPanel:
 
     def __init__(self, panel: Panel) -> None:
         self.panel, self.widgets = panel, []
+        self.folder = panel.gui.add_folder("Springs")
         self.quiet = False
         self.rebuild()
 
@@ -28,6 +29,10 @@ class SpringPanel:
         for widget in self.widgets:
             widget.remove()
         self.widgets, self.handles = [], []
+        with self.folder:
+            self._widgets()
+
+    def _widgets(self) -> None:
         springs, gui = self.panel.model.springs, self.panel.gui
         if not springs:
             self.widgets = [gui.add_markdown("No springs yet: *Re-optimise* chooses three.")]
@@ -78,7 +83,7 @@ class SpringPanel:
         self.stiffness.value = spring.stiffness
         self.here.value = self.panel.model.on[self.number]
         for point, p in zip(self.points, (spring.p_a, spring.p_b), strict=True):
-            point.value = tuple(round(1000.0 * x, 1) for x in p)
+            point.value = tuple(round(1000.0 * x, 1) + 0.0 for x in p)  # no minus zero
         self.quiet = False
 
     def _switched(self) -> None:
