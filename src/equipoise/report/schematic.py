@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ..arrays import Array
@@ -94,7 +96,7 @@ class _Pen:
 
     def line(self, points: list[Array] | Array, colour: str, width: float) -> None:
         self.drawing.lines.append(Line(_pairs(points), width, colour))
-        for a, b in zip(points[:-1], points[1:], strict=True):
+        for a, b in pairwise(points):
             self.taken.append(np.linspace(a, b, 2 + int(np.linalg.norm(b - a))))
 
     def disc(self, centre: Array, radius: float, colour: str, edge: str = "") -> None:
@@ -112,11 +114,12 @@ class _Pen:
 
     def support(self, p: Array) -> None:
         """A triangle on hatched ground, its tip at `p`."""
-        s, low = GROUND, p - [0, 1.5 * GROUND]
-        self.line([p, low + [-s, 0], low + [s, 0], p], style.GROUND, THICK)
-        self.line([low - [2 * s, 0], low + [2 * s, 0]], style.GROUND, 1.6 * THICK)
-        for x in np.linspace(-2 * s, 1.5 * s, 8):
-            self.line([low + [x, -0.5 * s], low + [x + 0.5 * s, 0]], style.GROUND, THIN)
+        s, (x, y) = GROUND, p
+        low = y - 1.5 * s
+        self.line(np.array([(x, y), (x - s, low), (x + s, low), (x, y)]), style.GROUND, THICK)
+        self.line(np.array([(x - 2 * s, low), (x + 2 * s, low)]), style.GROUND, 1.6 * THICK)
+        for left in np.linspace(x - 2 * s, x + 1.5 * s, 8):
+            self.line(np.array([(left, low - 0.5 * s), (left + 0.5 * s, low)]), style.GROUND, THIN)
 
     def label(self, text: str, p: Array, placed: list[Array]) -> None:
         """Beside `p`, where it covers least of what is drawn and of the labels in `placed` [mm]."""

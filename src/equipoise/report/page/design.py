@@ -1,0 +1,186 @@
+"""The sections about the design: picture, springs, energies and torques, certificate, conventions, where it is from."""
+
+from __future__ import annotations
+
+import hashlib
+import shlex
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..._version import __version__
+from ...balance import Balance
+from ...energy.fourier import EXACT
+from ...io.yaml import to_text
+from ..schematic import symbol
+from ..text import percent, torque
+from . import pictures
+from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
+
+CONVENTIONS = (
+    "A holding torque is what a joint has to supply to keep a pose: the derivative of the potential energy by its "
+    "coordinate.",
+    "Attachments are in the frame of their own body; a body's frame sits at the joint that carries it and turns with it, "
+    "as in URDF. The frame of 'world' does not move.",
+    "A spring is linear, with the energy k/2 (length - free length)²; it also pushes when it is shorter than its free "
+    "length. A free length of 0 is the zero-free-length spring of static balancing.",
+    "Bodies are rigid and joints are without friction. Only what is listed here has mass.",
+    "Whether springs and links are in each other's way is not judged here: that is what 'equipoise clearance' does.",
+)
+
+
+def mechanism_section(balance: Balance) -> Section:
+    """What it looks like, and its springs."""
+    springs = balance.mechanism.springs
+    blocks: list[Block] = [pictures.two_poses(balance), pictures.scheme(balance)]
+    if not springs:
+        return Section("Mechanism", (*blocks, Paragraph("It has no springs.")))
+    head = ("spring", "", "k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]")
+    rows = [
+        (
+            spring.name, symbol("k", i), _exact(spring.stiffness), _mm(spring.free_length), _mm(use.min_length),
+            _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
+        )
+        for i, (spring, use) in enumerate(zip(springs, balance.use, strict=True))
+    ]  # fmt: skip
+    blocks.append(Table.of("Springs, and how they are used over all poses looked at", head, rows))
+    ends = [
+        (symbol(letter, i), spring.name, body, *map(_mm, p))
+        for i, spring in enumerate(springs)
+        for letter, body, p in (("a", spring.body_a, spring.p_a), ("b", spring.body_b, spring.p_b))
+    ]
+    head = ("end", "spring", "body", "x [mm]", "y [mm]", "z [mm]")
+    blocks.append(Table.of("Attachments, each in the frame of its body", head, ends))
+    return Section("Mechanism and springs", tuple(blocks))
+
+
+def torque_section(balance: Balance) -> Section:
+    """Energies and holding torques."""
+    if not balance.coordinates:
+        return Section("Energy and torque", (Paragraph("Nothing moves: there is no coordinate to balance."),))
+    floor = EXACT * float(balance.unbalanced.max.max(initial=0))
+    ranges = {"gravity": balance.gravity, "springs": balance.springs, "gravity and springs": balance.total}
+    energies = Table.of(
+        "Potential energy over all poses looked at",
+        ("of", "least [J]", "largest [J]"),
+        [(name, *(Number(value, f"{value:.6g}") for value in pair)) for name, pair in ranges.items()],
+    )
+    loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
+    rows = []
+    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
+        cells: list[Cell] = [Number(float(load[j]), torque(float(load[j]), floor)) for load in loads]
+        bound = "not known" if balance.bound is None else Number(balance.bound[j], torque(balance.bound[j], floor))
+        rows.append((name, *cells, bound, "N m" if unit == "rad" else "N"))
+    head = ("coordinate", "without springs, largest", "rms", "with springs, largest", "rms", "proved bound", "unit")
+    torques = Table.of("Holding torque of each coordinate", head, rows)
+    blocks: list[Block] = [*pictures.torque_bars(balance), torques, *pictures.along_motion(balance), energies]
+    if not balance.exact:
+        pose = [
+            (
+                name,
+                Number(float(value), _pose(float(value), unit)),
+                Number(float(load), torque(abs(float(load)), floor)),
+            )
+            for name, value, load, unit in zip(
+                balance.coordinates, balance.worst_configuration, balance.worst_torque, balance.units, strict=True
+            )
+        ]
+        head = ("coordinate", "value", "holding torque [N m or N]")
+        blocks.append(Table.of("The worst pose that was found", head, pose))
+    return Section("Energy and torque", tuple(blocks))
+
+
+def certificate_section(balance: Balance) -> Section:
+    """What the verdict rests on, and how near the design is to the best possible."""
+    c = balance.certificate
+    rows: list[tuple[str, Cell]] = [
+        ("kind", "Fourier series, a proof for every pose" if c.kind == "fourier" else c.kind)
+    ]
+    if c.terms is not None and c.max_coefficient is not None:
+        rows.append(("terms", Number(c.terms, f"{c.terms:,}")))
+        rows.append(("largest that varies [J]", Number(c.max_coefficient, f"{c.max_coefficient:.2g}")))
+    if c.reason:
+        rows.append(("no proof, because", c.reason))
+    rows.append(("random poses looked at", Number(c.samples, f"{c.samples:,}")))
+    rows.append(("mean of the total energy [J]", Number(balance.constant, f"{balance.constant:.6g}")))
+    if balance.mobility is not None:
+        rows.append(("mobility by rank, by counting", f"{balance.mobility.numerical}, {balance.mobility.gruebler}"))
+    blocks: list[Block] = [Table.of("Certificate", ("", "found"), rows)]
+    blocks += _bound(balance.mechanism.provenance)
+    return Section("Certificate, bound and gap", tuple(blocks))
+
+
+def _bound(made: Mapping[str, Any]) -> Iterator[Block]:
+    """As the method that made the design wrote it into the file."""
+    unbalanced, left, bound, gap = (made.get(name) for name in ("unbalanced", "residual", "bound", "certified_gap"))
+    if not all(isinstance(value, (int, float)) for value in (unbalanced, left)) or not unbalanced or left is None:
+        yield Paragraph("The file does not say how its springs were chosen, so no bound is known.")
+        return
+    floor = EXACT * unbalanced
+    rows: list[tuple[str, Cell]] = [
+        ("without springs [N m]", Number(unbalanced, torque(unbalanced, floor))),
+        ("with springs [N m]", Number(left, torque(left, floor))),
+    ]
+    if isinstance(bound, (int, float)) and isinstance(gap, (int, float)):
+        rows.append(
+            ("bound: no springs on these pairs and regions leave less [N m]", Number(bound, torque(bound, floor)))
+        )
+        rows.append(("gap, share of the torque without springs", Number(gap, percent(gap))))
+    else:
+        rows.append(("bound", "this method gives none"))
+    caption = (
+        f"The {made.get('objective', '')} torque of all joints together, as method '{made.get('method', '?')}' wrote it"
+    )
+    yield Table.of(caption, ("", "value"), rows)
+
+
+def conventions_section(balance: Balance) -> Section:
+    """What all of this takes for granted."""
+    m = balance.mechanism
+    gravity = ", ".join(f"{value:g}" for value in m.gravity)
+    total = sum(body.mass for body in m.bodies) + sum(mass.mass for mass in m.masses) + sum(s.mass for s in m.springs)
+    texts = [
+        f"Gravity is ({gravity}) m/s² in the world's frame; all that moves or stands weighs {total:.4g} kg together.",
+        *CONVENTIONS,
+        f"Extremes are the largest over {balance.certificate.samples:,} random poses inside the joint ranges, each improved "
+        f"by a search from there. A proof holds at every configuration, also outside the ranges.",
+        f"Torques below {EXACT:g} of the largest one without springs count as nothing.",
+    ]
+    return Section("Assumptions and conventions", (Items(tuple(texts)),))
+
+
+def origin_section(balance: Balance, file: Path | None, command: str) -> Section:
+    """How to get the same again, and where it is from."""
+    m, rows = balance.mechanism, [("report by", f"equipoise {__version__}")]
+    blocks: list[Block] = []
+    if file is not None:
+        check = f"equipoise check {shlex.quote(file.name)} --json"
+        blocks = [Paragraph("With the file below, these commands give the same report and its numbers:")]
+        blocks.append(Code(f"{command}\n{check}", "Commands"))
+        rows += [("file", file.name), ("SHA-256 of the file", hashlib.sha256(file.read_bytes()).hexdigest())]
+    rows += [(str(name), _option(value)) for name, value in m.provenance.items()]
+    blocks.append(Table.of("Provenance", ("", "found"), rows))
+    blocks.append(Code(to_text(m), "The whole mechanism as a file"))
+    return Section("How to reproduce it, and provenance", tuple(blocks))
+
+
+def _option(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name}: {_option(one)}" for name, one in value.items()) or "none"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_option(one) for one in value) + "]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _exact(value: float) -> Number:
+    return Number(value, f"{value:.5g}")
+
+
+def _mm(value: float) -> Number:
+    return Number(value, f"{round(1e3 * value, 2) + 0.0:g}")
+
+
+def _pose(value: float, unit: str) -> str:
+    return f"{np.degrees(value):.1f}°" if unit == "rad" else f"{1e3 * value:.1f} mm"
