@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -27,6 +28,7 @@ BUILDS, LOOKED_AT = 20_000, 500  # builds of the tolerance, and poses of each
 NAMED = 6  # parameters that matter most
 
 Progress = Callable[[str, float], None]
+Result = TypeVar("Result", Release, Bill, Tolerance)
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ def run(balance: Balance, extras: tuple[str, ...], seed: int, report: Progress) 
     """Run what is asked for; what a mechanism does not allow is no error."""
     m = balance.mechanism
 
-    def attempt(name: str, what: str, work: Callable[[], object]) -> object:
+    def attempt(name: str, what: str, work: Callable[[], Result]) -> Result | str | None:
         if name not in extras:
             return None
         report(what, 0.0)
@@ -62,24 +64,25 @@ def run(balance: Balance, extras: tuple[str, ...], seed: int, report: Progress) 
         "building",
         lambda: tolerance(m, scatter, builds=BUILDS, poses=LOOKED_AT, seed=seed, progress=report),
     )
-    return Run(simulated, made, scattered)  # type: ignore[arg-type]
+    return Run(simulated, made, scattered)
 
 
 def sections(found: Run) -> list[Section]:
     """One for each that was asked for."""
-    return [
-        Section(title, _missing(result) if isinstance(result, str) else tuple(blocks(result)))
-        for title, result, blocks in (
-            ("Simulation", found.simulation, _simulation),
-            ("Hardware", found.hardware, _hardware),
-            ("Tolerance", found.tolerance, _tolerance),
-        )
-        if result is not None
-    ]  # type: ignore[operator]
+    made: tuple[Section | None, ...] = (
+        _section("Simulation", found.simulation, _simulation),
+        _section("Hardware", found.hardware, _hardware),
+        _section("Tolerance", found.tolerance, _tolerance),
+    )
+    return [section for section in made if section is not None]
 
 
-def _missing(why: str) -> tuple[Block, ...]:
-    return (Paragraph("Not run.", strong=True), Paragraph(why))
+def _section(title: str, result: Result | str | None, blocks: Callable[[Result], list[Block]]) -> Section | None:
+    if result is None:
+        return None
+    if isinstance(result, str):
+        return Section(title, (Paragraph("Not run.", strong=True), Paragraph(result)))
+    return Section(title, tuple(blocks(result)))
 
 
 def _simulation(found: Release) -> list[Block]:
@@ -113,8 +116,8 @@ def _hardware(found: Bill) -> list[Block]:
         s, about = way.winding.spring, way_dict(item, way, found.options.limits)
         rows.append([
             item.spring.name, way.kind, _plain(way.winding.count), f"{s.wire.standard} {s.wire.name}",
-            _plain(s.d / MM, 3), _plain(s.outer / MM), _plain(s.n), _plain(s.free_length / MM), _plain(about["max_force"]),
-            _plain(about["static_margin"], 3), _plain(1000 * s.mass),
+            _plain(s.d / MM, 3), _plain(s.outer / MM), _plain(s.n), _plain(s.free_length / MM),
+            _plain(about["max_force"]), _plain(about["static_margin"], 3), _plain(1000 * s.mass),
         ])  # fmt: skip
     head = (
         "spring", "made as", "side by side", "wire", "wire d [mm]", "outer d [mm]", "coils", "length [mm]",

@@ -22,8 +22,8 @@ from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 CONVENTIONS = (
     "A holding torque is what a joint has to supply to keep a pose: the derivative of the potential energy by its "
     "coordinate.",
-    "Attachments are in the frame of their own body; a body's frame sits at the joint that carries it and turns with it, "
-    "as in URDF. The frame of 'world' does not move.",
+    "Attachments are in the frame of their own body; a body's frame sits at the joint that carries it and turns with "
+    "it, as in URDF. The frame of 'world' does not move.",
     "A spring is linear, with the energy k/2 (length - free length)²; it also pushes when it is shorter than its free "
     "length. A free length of 0 is the zero-free-length spring of static balancing.",
     "Bodies are rigid and joints are without friction. Only what is listed here has mass.",
@@ -73,18 +73,24 @@ def torque_section(balance: Balance) -> Section:
         cells: list[Cell] = [Number(float(load[j]), torque(float(load[j]), floor)) for load in loads]
         bound = "not known" if balance.bound is None else Number(balance.bound[j], torque(balance.bound[j], floor))
         rows.append((name, *cells, bound, "N m" if unit == "rad" else "N"))
-    head = ("coordinate", "without springs, largest", "rms", "with springs, largest", "rms", "proved bound", "unit")
+    head = (
+        "coordinate", "largest without springs", "rms without", "largest with springs", "rms with", "proved bound", "unit",
+    )  # fmt: skip
     torques = Table.of("Holding torque of each coordinate", head, rows)
     blocks: list[Block] = [*pictures.torque_bars(balance), torques, *pictures.along_motion(balance), energies]
     if not balance.exact:
         pose = [
             (
                 name,
-                Number(float(value), _pose(float(value), unit)),
-                Number(float(load), torque(abs(float(load)), floor)),
+                Number(value, _pose(value, unit)),
+                Number(load, ("-" if load < 0 and abs(load) >= floor else "") + torque(abs(load), floor)),
             )
             for name, value, load, unit in zip(
-                balance.coordinates, balance.worst_configuration, balance.worst_torque, balance.units, strict=True
+                balance.coordinates,
+                balance.worst_configuration.tolist(),
+                balance.worst_torque.tolist(),
+                balance.units,
+                strict=True,
             )
         ]
         head = ("coordinate", "value", "holding torque [N m or N]")
@@ -95,9 +101,8 @@ def torque_section(balance: Balance) -> Section:
 def certificate_section(balance: Balance) -> Section:
     """What the verdict rests on, and how near the design is to the best possible."""
     c = balance.certificate
-    rows: list[tuple[str, Cell]] = [
-        ("kind", "Fourier series, a proof for every pose" if c.kind == "fourier" else c.kind)
-    ]
+    kind = "Fourier series, a proof for every pose" if c.kind == "fourier" else "random poses, no proof"
+    rows: list[tuple[str, Cell]] = [("kind", kind)]
     if c.terms is not None and c.max_coefficient is not None:
         rows.append(("terms", Number(c.terms, f"{c.terms:,}")))
         rows.append(("largest that varies [J]", Number(c.max_coefficient, f"{c.max_coefficient:.2g}")))
@@ -124,15 +129,12 @@ def _bound(made: Mapping[str, Any]) -> Iterator[Block]:
         ("with springs [N m]", Number(left, torque(left, floor))),
     ]
     if isinstance(bound, (int, float)) and isinstance(gap, (int, float)):
-        rows.append(
-            ("bound: no springs on these pairs and regions leave less [N m]", Number(bound, torque(bound, floor)))
-        )
+        rows.append(("bound: no springs allowed leave less [N m]", Number(bound, torque(bound, floor))))
         rows.append(("gap, share of the torque without springs", Number(gap, percent(gap))))
     else:
         rows.append(("bound", "this method gives none"))
-    caption = (
-        f"The {made.get('objective', '')} torque of all joints together, as method '{made.get('method', '?')}' wrote it"
-    )
+    method, objective = made.get("method", "?"), made.get("objective", "")
+    caption = f"The {objective} torque of all joints together, as method '{method}' wrote it into the file"
     yield Table.of(caption, ("", "value"), rows)
 
 
@@ -144,8 +146,8 @@ def conventions_section(balance: Balance) -> Section:
     texts = [
         f"Gravity is ({gravity}) m/s² in the world's frame; all that moves or stands weighs {total:.4g} kg together.",
         *CONVENTIONS,
-        f"Extremes are the largest over {balance.certificate.samples:,} random poses inside the joint ranges, each improved "
-        f"by a search from there. A proof holds at every configuration, also outside the ranges.",
+        f"Extremes are the largest over {balance.certificate.samples:,} random poses inside the joint ranges, each "
+        f"improved by a search from there. A proof holds at every configuration, also outside the ranges.",
         f"Torques below {EXACT:g} of the largest one without springs count as nothing.",
     ]
     return Section("Assumptions and conventions", (Items(tuple(texts)),))

@@ -15,7 +15,7 @@ def page(report: Report) -> str:
 
     # in a script element only "<" can end it
     data = {name: json.dumps(value, allow_nan=False).replace("<", "\\u003c") for name, value in report.data.items()}
-    template = files(__package__).joinpath("page.html").read_text("utf-8")
+    template = files("equipoise.report.page").joinpath("page.html").read_text("utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(template).render(report=report, data=data, block=block)
 

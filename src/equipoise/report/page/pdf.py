@@ -22,10 +22,10 @@ def pdf(report: Report) -> bytes:
         "sections": [{"title": s.title, "blocks": [_block(one) for one in s.blocks]} for s in report.sections],
     }
     return typst.compile(
-        files(__package__).joinpath("page.typ").read_bytes(),
+        files("equipoise.report.page").joinpath("page.typ").read_bytes(),
         format="pdf",
         sys_inputs={"report": json.dumps(content)},
-        font_paths=[f"{matplotlib.get_data_path()}/fonts/ttf"],
+        font_paths=[f"{matplotlib.get_data_path()}/fonts/ttf"],  # type: ignore[arg-type]  # its stub forgets text
         ignore_system_fonts=True,  # the same on every machine
         timestamp=0,
     )

@@ -38,7 +38,7 @@ VARIABLES = {
 
 
 def inline(text: str, key: str, title: str, said: str) -> str:
-    """An SVG for the inside of a page: named, its colours variables, its identifiers its own (they start with `key`)."""
+    """An SVG for the inside of a page: named, its colours variables, its identifiers starting with `key`."""
     root = ElementTree.fromstring(text)
     for parent in list(root.iter()):
         for child in list(parent):
@@ -153,23 +153,23 @@ def along_motion(balance: Balance) -> list[Picture]:
     state = Potential(mechanism)(q[0] + way[:, None] * (q[1] - q[0]))
     springs = state.springs.sum(axis=1)
     energies = {"gravity": state.gravity, "springs": springs, "both": state.energy}
-    found = [_curves("energies", "Energy", "energy [J]", way, energies)]
+    found = [_curves("energies", "Energy", "J", way, energies)]
     rows = next(iter(loads.shown(balance).values()))
     j = int(rows[np.argmax(balance.unbalanced.max[rows])])
     name, (what, symbol) = balance.coordinates[j], loads.UNITS[balance.units[j]]
     gravity, both = state.gravity_torque[:, j], state.torque[:, j]
     torques = {"gravity": gravity, "springs": both - gravity, "both": both}
-    found.append(_curves("torques", f"Holding {what} of {name}", f"{what} [{symbol}]", way, torques))
+    found.append(_curves("torques", f"Holding {what} of {name}", symbol, way, torques))
     return found
 
 
-def _curves(key: str, title: str, ylabel: str, way: Array, series: dict[str, Array]) -> Picture:
+def _curves(key: str, title: str, unit: str, way: Array, series: dict[str, Array]) -> Picture:
     whole = max((float(np.nanmax(np.abs(y), initial=0)) for y in series.values()), default=0.0)
     series = {name: np.where(np.abs(y) < 1e-10 * whole, 0.0, y) for name, y in series.items()}  # rounding is no curve
     title = f"{title}, from the left pose to the right one"
-    text = svg.curves(way, series, "share of the way, all coordinates moving evenly", ylabel, title)
+    text = svg.curves(way, series, "share of the way, all coordinates moving evenly", unit, title)
     said = ElementTree.fromstring(text).get("aria-label", "")
-    return Picture(inline(text, key, title, said), f"{title}.", said, narrow=True)
+    return Picture(inline(text, key, title, said), f"{title} [{unit}].", said, narrow=True)
 
 
 def _springs(balance: Balance) -> str:
