@@ -52,6 +52,11 @@ def schematic(mechanism: Mechanism, *, legend: bool = True) -> Drawing:
     return drawing
 
 
+def to_text(mechanism: Mechanism) -> str:
+    """The schematic as an SVG file."""
+    return schematic(mechanism).svg()
+
+
 class _Pen:
     def __init__(self, drawing: Drawing, skeleton: Skeleton, poses: Poses, view: View, foot: float) -> None:
         self.drawing, self.skeleton, self.poses, self.view = drawing, skeleton, poses, view

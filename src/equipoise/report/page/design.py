@@ -33,40 +33,55 @@ CONVENTIONS = (
 
 def mechanism_section(balance: Balance) -> Section:
     """What it looks like, and its springs."""
-    springs = balance.mechanism.springs
-    blocks: list[Block] = [pictures.two_poses(balance), pictures.scheme(balance)]
-    if not springs:
-        return Section("Mechanism", (*blocks, Paragraph("It has no springs.")))
+    looks: tuple[Block, ...] = (pictures.two_poses(balance), pictures.scheme(balance))
+    if not balance.mechanism.springs:
+        return Section("Mechanism", (*looks, Paragraph("It has no springs.")))
+    return Section("Mechanism and springs", (*looks, springs_table(balance), _attachments(balance)))
+
+
+def springs_table(balance: Balance) -> Table:
+    """Each spring and how it is used."""
     head = ("spring", "", "k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]")
     rows = [
         (
-            spring.name, symbol("k", i), _exact(spring.stiffness), _mm(spring.free_length), _mm(use.min_length),
-            _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
+            spring.name, symbol("k", i), Number(spring.stiffness, f"{spring.stiffness:.5g}"), _mm(spring.free_length),
+            _mm(use.min_length), _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
         )
-        for i, (spring, use) in enumerate(zip(springs, balance.use, strict=True))
+        for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True))
     ]  # fmt: skip
-    blocks.append(Table.of("Springs, and how they are used over all poses looked at", head, rows))
+    return Table.of("Springs, and how they are used over all poses looked at", head, rows)
+
+
+def _attachments(balance: Balance) -> Table:
     ends = [
         (symbol(letter, i), spring.name, body, *map(_mm, p))
-        for i, spring in enumerate(springs)
+        for i, spring in enumerate(balance.mechanism.springs)
         for letter, body, p in (("a", spring.body_a, spring.p_a), ("b", spring.body_b, spring.p_b))
     ]
     head = ("end", "spring", "body", "x [mm]", "y [mm]", "z [mm]")
-    blocks.append(Table.of("Attachments, each in the frame of its body", head, ends))
-    return Section("Mechanism and springs", tuple(blocks))
+    return Table.of("Attachments, each in the frame of its body", head, ends)
 
 
 def torque_section(balance: Balance) -> Section:
     """Energies and holding torques."""
     if not balance.coordinates:
         return Section("Energy and torque", (Paragraph("Nothing moves: there is no coordinate to balance."),))
-    floor = EXACT * float(balance.unbalanced.max.max(initial=0))
     ranges = {"gravity": balance.gravity, "springs": balance.springs, "gravity and springs": balance.total}
     energies = Table.of(
         "Potential energy over all poses looked at",
         ("of", "least [J]", "largest [J]"),
         [(name, *(Number(value, f"{value:.6g}") for value in pair)) for name, pair in ranges.items()],
     )
+    blocks: list[Block] = [*pictures.torque_bars(balance), torque_table(balance), *pictures.along_motion(balance)]
+    blocks.append(energies)
+    if not balance.exact:
+        blocks.append(_worst(balance))
+    return Section("Energy and torque", tuple(blocks))
+
+
+def torque_table(balance: Balance) -> Table:
+    """What each coordinate has to hold without springs and with them."""
+    floor = _floor(balance)
     loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
     rows = []
     for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
@@ -74,28 +89,35 @@ def torque_section(balance: Balance) -> Section:
         bound = "not known" if balance.bound is None else Number(balance.bound[j], torque(balance.bound[j], floor))
         rows.append((name, *cells, bound, "N m" if unit == "rad" else "N"))
     head = (
-        "coordinate", "largest without springs", "rms without", "largest with springs", "rms with", "proved bound", "unit",
+        "coordinate", "largest without springs", "rms without", "largest with springs", "rms with", "proved bound",
+        "unit",
     )  # fmt: skip
-    torques = Table.of("Holding torque of each coordinate", head, rows)
-    blocks: list[Block] = [*pictures.torque_bars(balance), torques, *pictures.along_motion(balance), energies]
-    if not balance.exact:
-        pose = [
-            (
-                name,
-                Number(value, _pose(value, unit)),
-                Number(load, ("-" if load < 0 and abs(load) >= floor else "") + torque(abs(load), floor)),
-            )
-            for name, value, load, unit in zip(
-                balance.coordinates,
-                balance.worst_configuration.tolist(),
-                balance.worst_torque.tolist(),
-                balance.units,
-                strict=True,
-            )
-        ]
-        head = ("coordinate", "value", "holding torque [N m or N]")
-        blocks.append(Table.of("The worst pose that was found", head, pose))
-    return Section("Energy and torque", tuple(blocks))
+    return Table.of("Holding torque of each coordinate", head, rows)
+
+
+def _worst(balance: Balance) -> Table:
+    floor = _floor(balance)
+    pose = zip(
+        balance.coordinates,
+        balance.worst_configuration.tolist(),
+        balance.worst_torque.tolist(),
+        balance.units,
+        strict=True,
+    )
+    rows = [
+        (name, Number(value, _pose(value, unit)), Number(load, _signed(load, floor)), "N m" if unit == "rad" else "N")
+        for name, value, load, unit in pose
+    ]
+    return Table.of("The worst pose that was found", ("coordinate", "value", "holding torque", "unit"), rows)
+
+
+def _floor(balance: Balance) -> float:
+    """[N m or N] what counts as nothing."""
+    return EXACT * float(balance.unbalanced.max.max(initial=0))
+
+
+def _signed(load: float, floor: float) -> str:
+    return f"{'-' if load < -floor else ''}{torque(abs(load), floor)}"
 
 
 def certificate_section(balance: Balance) -> Section:
@@ -174,10 +196,6 @@ def _option(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_option(one) for one in value) + "]"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _exact(value: float) -> Number:
-    return Number(value, f"{value:.5g}")
 
 
 def _mm(value: float) -> Number:

@@ -117,14 +117,14 @@ def two_poses(balance: Balance) -> Picture:
     return Picture(inline(text, "poses", title, said), caption, said)
 
 
-def scheme(balance: Balance) -> Picture:
-    """The schematic, whose letters the tables use."""
+def scheme(balance: Balance, key: str = "scheme") -> Picture:
+    """The schematic, whose letters the tables use; `key` makes its identifiers its own."""
     mechanism = balance.mechanism
     title = f"Schematic of {style.clean(mechanism.name, 60)}"
     ends = "; ".join(f"spring {i} from {s.body_a} to {s.body_b}" for i, s in enumerate(mechanism.springs, start=1))
     said = f"Links, joints and ground as lines, circles and hatching. {ends or 'No springs'}."
     caption = f"{title}: a and b are the ends of each spring, k its stiffness; the numbers are in the tables below."
-    return Picture(inline(schematic(mechanism, legend=False).svg(), "scheme", title, said), caption, said)
+    return Picture(inline(schematic(mechanism, legend=False).svg(), key, title, said), caption, said)
 
 
 def torque_bars(balance: Balance) -> list[Picture]:
