@@ -57,7 +57,8 @@ def test_never_below_the_samples_nor_beyond_the_bound(seed: int) -> None:
     except InputError:
         return  # its ranges contradict each other
     found, where = climb(tree, lambda q: np.abs(potential(q).torque), q, seed)
-    assert (found >= np.abs(potential(q).torque).max(axis=0, initial=0)).all()
+    best = np.abs(potential(q).torque).max(axis=0, initial=0)
+    assert (found >= best * (1 - 1e-13) - 1e-13).all()  # poses in other company are rounded differently
     assert (found <= FourierEnergy(m).torque_bound() * (1 + 1e-12) + 1e-11).all()
     assert inside(tree, where).all()
     lower, upper = bounds(tree)
