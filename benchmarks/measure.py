@@ -46,12 +46,6 @@ def machine() -> str:
     return f"{os.cpu_count()} cores, {vectors}, {memory:.0f} GB"
 
 
-def million_sincos() -> float:
-    """Pairs of sine and cosine per second on one core [million], from the cache."""
-    t = Trace()
-    return _rate(t, [t.add(*t.sincos(t.input(row))) for row in range(ROWS)]) / 1e6
-
-
 def operations() -> float:
     """Products with a sum per second and core [lanes], from the registers."""
     steps = 100
@@ -60,17 +54,26 @@ def operations() -> float:
     x: list[Value] = list(q)
     for _ in range(steps):  # of all rows in turn: none waits for another
         x = [t.add(t.mul(a, b), b) for a, b in zip(x, q, strict=True)]
-    return _rate(t, x) * steps
+    return ROWS * steps / _seconds(t, x)
+
+
+def sincos() -> float:
+    """Pairs of sine and cosine per second and core [lanes], from the registers."""
+    t = Trace()
+    q = t.input(0)
+    pairs = [t.sincos(t.mul(1.0 + 0.1 * i, q)) for i in range(ROWS)]
+    return ROWS / (_seconds(t, [t.total([t.mul(s, c) for s, c in pairs])]) - 2 * ROWS / operations())
 
 
 ROWS = 12
 
 
-def _rate(t: Trace, outputs: list[Value]) -> float:
-    N = 1024
-    run, out = Generated(t.program(outputs)), np.zeros((ROWS, N))
-    q = np.random.default_rng(0).uniform(-1, 1, (ROWS, N))
-    return ROWS * N * 50 / cpu_seconds(lambda: [run(q, out) for _ in range(50)])
+def _seconds(t: Trace, outputs: list[Value]) -> float:
+    """Processor time per pose."""
+    N, program = 4096, t.program(outputs)
+    run, out = Generated(program), np.zeros((len(outputs), N))
+    q = np.random.default_rng(0).uniform(-1, 1, (program.inputs, N))
+    return cpu_seconds(lambda: [run(q, out) for _ in range(10)]) / (10 * N)
 
 
 def bandwidth() -> float:

@@ -28,7 +28,7 @@ def report(streamed: int) -> tuple[str, dict[str, list[tuple[int, float]]]]:
     names = list(dict.fromkeys(rate.name for rate in rates))
     found = [(name, *(f"{million[name, t]:.3g}" if (name, t) in million else "" for t in (1, 2))) for name in names]
     growth = speed.growth()
-    seconds, memory = speed.streaming(streamed)
+    seconds, compiler, memory = speed.streaming(streamed)
     ratios = []
     for name, aim in ((speed.PINOCCHIO, "30"), (speed.MUJOCO, "100"), (speed.C, "0.5")):
         if (name, 1) in million:
@@ -52,7 +52,7 @@ def report(streamed: int) -> tuple[str, dict[str, list[tuple[int, float]]]]:
             for what, points in growth.items()
         ),
         f"Streamed statistics of {streamed:,} random poses on two threads: {streamed / seconds / 1e6:.3g} million per "
-        f"second, drawing them included; {memory:.3g} MiB of memory more than a few poses take.\n",
+        f"second, drawing them included; {memory:.3g} MiB of memory, after the compiler's {compiler:.3g}.\n",
         table(("starting", "s"), [(what, f"{value:.3g}") for what, value in speed.starting()]),
         "\nSolvers, once warm:\n",
         table(("", "ms"), [(what, f"{1e3 * value:.3g}") for what, value in solving.warm()]),

@@ -50,7 +50,8 @@ def rates() -> list[Rate]:
     q = np.random.default_rng(0).uniform(-np.pi, np.pi, (POSES, 6))
     known = potential.reference(q[:2000])
     columns = np.asfortranarray(q)
-    out = np.zeros((7, POSES))
+    out = kernel.room(POSES)
+    out[:] = 0.0
     tasks: dict[tuple[str, int], tuple[int, Callable[[], object]]] = {}
 
     def agree(name: str, torque: np.ndarray, expected: np.ndarray) -> None:
@@ -103,8 +104,8 @@ def limits() -> list[tuple[str, float]]:
     """What the arithmetic and the memory of one core allow [million poses per second]."""
     kernel = Kernel(arms.ur5(5))
     program = min(kernel.programs.values(), key=lambda program: program.cost)
-    seconds = program.cost / measure.operations() + 6 / (measure.million_sincos() * 1e6)
-    moved = 8 * (6 + 2 * 7)  # what is written is first read
+    seconds = program.cost / measure.operations() + 6 / measure.sincos()
+    moved = 8 * (6 + 7)  # what is written goes past the caches
     return [("arithmetic, sines included", 1e-6 / seconds), ("memory", measure.bandwidth() / moved / 1e6)]
 
 
@@ -112,7 +113,8 @@ def _time_of(mechanism: eq.Mechanism, poses: int) -> float:
     """Nanoseconds per pose of the generated kernel on one core."""
     kernel = Kernel(mechanism)
     q = np.asfortranarray(np.random.default_rng(0).uniform(-np.pi, np.pi, (poses, kernel.tree.n)))
-    out = np.zeros((1 + kernel.tree.n, poses))
+    out = kernel.room(poses)
+    out[:] = 0.0
     repeat = 25 if poses <= 10**5 else 7
     return 1e9 * measure.cpu_seconds(lambda: kernel(q, out=out, tier="generated"), repeat) / poses
 
@@ -133,24 +135,31 @@ def slope(points: list[tuple[int, float]]) -> float:
 
 
 STREAM = """
-import resource, sys, time
+import sys, time
+from pathlib import Path
 sys.path.insert(0, "benchmarks")
 import arms, numpy as np
-from equipoise.energy.stream import CHUNK, statistics
+from equipoise.energy.kernel import Kernel
+from equipoise.energy.stream import statistics
+def memory():  # of this process alone; a child's ru_maxrss begins with its parent's
+    line, = (x for x in Path("/proc/self/status").read_text().splitlines() if x.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024
 mechanism = arms.ur5(5)
-statistics(mechanism, 4 * CHUNK, threads=2)
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+statistics(mechanism, 8)
+at_first = memory()
+Kernel.of(mechanism)(np.zeros((8, 6)), tier="generated")
+compiled = memory()
 start = time.perf_counter()
 statistics(mechanism, int(sys.argv[1]), threads=2)
-print(time.perf_counter() - start, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
+print(time.perf_counter() - start, compiled - at_first, memory() - compiled)
 """
 
 
-def streaming(poses: int) -> tuple[float, float]:
-    """Seconds for so many streamed poses on two threads, and MiB of memory beyond what is there before the first."""
+def streaming(poses: int) -> tuple[float, float, float]:
+    """Seconds for so many streamed poses on two threads; MiB that the compiler takes before, and the poses then."""
     done = subprocess.run([sys.executable, "-c", STREAM, str(poses)], capture_output=True, text=True, check=True)
-    seconds, more = map(float, done.stdout.split())
-    return seconds, more
+    seconds, compiler, more = map(float, done.stdout.split())
+    return seconds, compiler, more
 
 
 def starting() -> list[tuple[str, float]]:

@@ -21,7 +21,8 @@ from zoo import ZOO
 import equipoise as eq
 from equipoise.energy import Potential
 from equipoise.energy.kernel import Kernel
-from equipoise.energy.kernel.kernel import CHUNK, TIERS
+from equipoise.energy.kernel.generated import Generated
+from equipoise.energy.kernel.kernel import CACHE, CHUNK, LINE, TIERS
 from equipoise.energy.kernel.trace import Trace
 from equipoise.energy.potential import lumped_masses
 from equipoise.errors import UnsupportedError
@@ -189,6 +190,22 @@ def test_loops_and_wrong_shapes_are_refused() -> None:
         kernel(np.zeros((3, 5)))
     with pytest.raises(ValueError, match="out has shape"):
         kernel(np.zeros((3, 6)), out=np.empty((3, 7)))
+
+
+def test_past_the_caches() -> None:
+    """Large results are written another way where they are aligned: the same numbers, also at the ends of parts."""
+    kernel = Kernel(robot("ur5"))
+    N = CACHE // (8 * 7) + 13
+    q = np.asfortranarray(np.random.default_rng(0).uniform(-np.pi, np.pi, (N, 6)))
+    room = kernel.room(N)
+    assert room.ctypes.data % LINE == room.strides[0] % LINE == 0
+    found = kernel(q, out=room, threads=2, tier="generated")
+    known = kernel(q, out=np.empty((7, N + 1))[:, 1:], tier="generated")  # aligned nowhere
+    np.testing.assert_array_equal(found.energy, known.energy)
+    np.testing.assert_array_equal(found.torque, known.torque)
+    generated = kernel._total._started["generated", False]
+    assert isinstance(generated, Generated)
+    assert set(generated._forms) == {"streamed", "rows"}
 
 
 def test_many_poses_get_compiled(monkeypatch: pytest.MonkeyPatch) -> None:

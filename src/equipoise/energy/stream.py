@@ -23,7 +23,7 @@ from ..mechanism import Mechanism
 from ..validate import whole_number
 from .kernel import Kernel
 
-CHUNK = 65_536  # poses held at a time
+CHUNK = 16_384  # poses held at a time
 FINE = 8  # bits: a bin is 2^-8 of its value wide
 LOWEST, HIGHEST = -64, 64  # powers of two that the bins cover [N m or N]
 BINS = (HIGHEST - LOWEST) << FINE

@@ -31,7 +31,9 @@ COSTS = {  # seconds: to start, to start for each operation, for each operation 
     "generic": (0.7, 0.0, 2e-10),
     "generated": (0.1, 6e-4, 5e-11),
 }
-CHUNK = 16_384  # poses taken at a time
+CHUNK = 32_768  # poses that a thread takes at a time, at most
+LINE = 64  # bytes of a cache's line, and of the longest vectors
+CACHE = 2**22  # bytes: results of more have left the caches before anybody reads them
 Real = NDArray[Any]  # double or single
 
 
@@ -79,7 +81,8 @@ class Kernel:
         Fastest where a coordinate's values lie next to each other (Fortran's order); the torque is given so.
 
         Args:
-            out: (1 + n, N) to write to, energy first, as a row each; a fresh large array costs more than the work.
+            out: (1 + n, N) to write to, energy first, as a row each; a fresh large array costs more than the work. Best
+                one of `room`.
             threads: that share the work.
             tier: what computes; by default what is estimated to be done first.
         """
@@ -91,6 +94,10 @@ class Kernel:
             raise ValueError(f"out has shape {out.shape} and {out.dtype}, expected rows of {(rows, len(q))}, {q.dtype}")
         self._total.run(q.T, out, threads, tier)
         return Batch(out[0], out[1:].T)
+
+    def room(self, N: int, dtype: type[np.floating] = np.float64) -> Real:
+        """(1 + n, N) for `out`, not filled: aligned for vectors, so that large results can go past the caches."""
+        return _empty(self._total.rows, N, np.dtype(dtype))
 
     def parts(self, q: ArrayLike, *, threads: int = 1, tier: Tier | None = None) -> Parts:
         """Energies, lengths and torques of gravity and springs apart, at `q` (N, n) [rad or m]."""
@@ -117,7 +124,7 @@ class Kernel:
 
 
 class _Runs(Protocol):
-    def __call__(self, q: Real, out: Real) -> float: ...
+    def __call__(self, q: Real, out: Real, streamed: bool) -> float: ...
 
 
 class _Code:
@@ -146,20 +153,26 @@ class _Code:
         N, single = q.shape[1], q.dtype == np.float32
         self._work += N
         call = self._runner(tier or self._choice(single), single)
+        streamed = out.nbytes > CACHE
+
+        # whole lines of a cache, and enough parts that no thread waits long for another
+        size = min(CHUNK, max(4096, -(-N // (4 * threads)) // 512 * 512))
 
         def work(chunks: Iterator[int]) -> None:
             for start in chunks:
-                part = slice(start, start + CHUNK)
+                part = slice(start, start + size)
                 # a sine of single precision is no better than its angle, so far away is no matter
-                if not call(q[:, part], out[:, part]) <= self._far:
+                if not call(q[:, part], out[:, part], streamed) <= self._far:
                     by_numpy.run(self.program, q[:, part], out[:, part])
 
-        chunks = iter(range(0, N, CHUNK))  # each thread takes the next: a slow one holds nobody up
-        if threads <= 1 or N <= CHUNK:
+        chunks = iter(range(0, N, size))  # each thread takes the next: a slow one holds nobody up
+        if threads <= 1 or size >= N:
             work(chunks)
             return
-        with ThreadPoolExecutor(threads) as pool:
-            for done in [pool.submit(work, chunks) for _ in range(threads)]:
+        with ThreadPoolExecutor(threads - 1) as pool:
+            others = [pool.submit(work, chunks) for _ in range(threads - 1)]
+            work(chunks)
+            for done in others:
                 done.result()
 
     def _choice(self, single: bool) -> Tier:
@@ -186,12 +199,17 @@ class _Code:
 
             return Generated(program, single)
         if tier == "generic":
-            return lambda q, out: generic.run(program, q, out)
+            return lambda q, out, streamed: generic.run(program, q, out)
         if tier == "numpy":
-            return lambda q, out: by_numpy.run(program, q, out)
+            return lambda q, out, streamed: by_numpy.run(program, q, out)
         raise ValueError(f"tier '{tier}' is none of {', '.join(TIERS)}")
 
 
 def _empty(rows: int, N: int, dtype: np.dtype) -> Real:
-    """(rows, N) whose rows do not all fall on the same lines of a cache."""
-    return np.empty((rows, N + (72 - N) % 512 if N > 512 else N), dtype)[:, :N]
+    """(rows, N); long rows begin at whole lines of a cache, and not all at the same ones of it."""
+    if N <= 512:
+        return np.empty((rows, N), dtype)
+    row, line = N + (72 - N) % 512, LINE // np.dtype(dtype).itemsize
+    found = np.empty(rows * row + line, dtype)
+    skip = -found.ctypes.data % LINE // found.itemsize
+    return found[skip : skip + rows * row].reshape(rows, row)[:, :N]

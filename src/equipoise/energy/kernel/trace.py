@@ -21,7 +21,7 @@ Vector = tuple[Value, Value, Value]
 ADD, SUB, MUL, ADDK, MULK, FMA, FMS, FNM, FMAK, FMSK, FMAM, SQRT, SHARE, INPUT, SINCOS = range(15)
 MEANING = ("a+b", "a-b", "a*b", "a+k", "a*k", "a*b+c", "a*b-c", "c-a*b", "a*k+c", "a*k-c", "a*k+m",
            "sqrt(a)", "a>0 ? 1-k/a : 0", "input k", "sin, cos of a")  # fmt: skip
-_SIN, _COS, _FREE = 100, 101, 102
+_SIN, _COS = 100, 101
 
 
 class Trace:
