@@ -16,7 +16,8 @@ from robots import robot
 import equipoise as eq
 from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis.free_length import WIDTH, _Fit, ordinary
+from equipoise.synthesis.fit import WIDTH, Fit
+from equipoise.synthesis.free_length import ordinary
 
 MGL = 2 * zoo.G * 0.3
 
@@ -64,7 +65,7 @@ def test_the_jacobian_by_differences():
             eq.Spring("two", "base_link", (0, 0, 0.1), "wrist_1_link", (0.1, 0, 0.02), 300.0),
         )
     )
-    fit = _Fit(m, {"one": 0.05, "two": 0.3}, {}, sample(Tree.of(m), 30), None)
+    fit = Fit(m, {"one": 0.05, "two": 0.3}, {}, sample(Tree.of(m), 30), None)
     x = next(fit.starts(5)).ravel()
     x += 0.05 * np.random.default_rng(0).normal(size=2 * WIDTH)
     J, h = fit.evaluate(x)[1], 1e-6

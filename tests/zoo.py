@@ -7,10 +7,10 @@ about -y, so that a positive angle lifts them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sqrt
 
-from equipoise.mechanism import Body, Coupling, Joint, Mechanism, PointMass
+from equipoise.mechanism import Body, Capsule, Coupling, Joint, Mechanism, PointMass
 from equipoise.spring import Spring
 
 G = 9.81  # [m/s^2]
@@ -64,6 +64,16 @@ def pendulum(stiffness: float = PENDULUM_K, free_length: float = 0.0, spring_mas
         (hinge("shoulder", "world", "arm"),),
         springs=(spring,),
     )
+
+
+def with_post(free_length: float = 0.0) -> Mechanism:
+    """The pendulum beside a post of 10 mm radius at 0.1 m from its plane; a spring 20 mm thick."""
+    m = pendulum(free_length=free_length)
+    spring = replace(m.springs[0], diameter=0.02)
+    post = Capsule("post", "stand", (0.05, 0.1, -1.0), (0.05, 0.1, 1.0), 0.01)
+    stand = Joint("bolts", "fixed", "world", "stand")
+    m = replace(m, bodies=(*m.bodies, Body("stand")), joints=(*m.joints, stand), capsules=(post,))
+    return m.with_springs((spring,))
 
 
 def exact_pendulum() -> Known:

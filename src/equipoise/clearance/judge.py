@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +14,7 @@ from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..validate import MAX_SAMPLES, whole_number
-from .segments import closest
+from .pairs import Pairs
 
 TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
 
@@ -72,33 +71,10 @@ def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0
     samples = mechanism.workspace.samples if samples is None else samples
     whole_number("samples", samples, 1, MAX_SAMPLES)
     q = sample(tree, samples, seed)
-    names, distances = _distances(mechanism)
-    least, where = climb(tree, lambda x: -distances(x), q, seed)
-    gaps = [Gap(*name, float(-d), at) for name, d, at in zip(names, least, where, strict=True)]
+    pairs = Pairs(mechanism)
+    least, where = climb(tree, lambda x: -pairs.distances(tree.poses(x)), q, seed)
+    gaps = [Gap(*name, float(-d), at) for name, d, at in zip(pairs.names, least, where, strict=True)]
     return Clearance(tuple(sorted(gaps, key=lambda gap: gap.distance)), tuple(_lines(mechanism, q)))
-
-
-def _distances(mechanism: Mechanism) -> tuple[list[tuple[str, str]], Callable[[Array], Array]]:
-    """The pairs (spring, other), and the distance of their surfaces (N, pairs) [m] at configurations (N, n)."""
-    tree, springs, capsules = Tree.of(mechanism), mechanism.springs, mechanism.capsules
-    bodies = [(tree.index[s.body_a], tree.index[s.body_b]) for s in springs]
-    bodies += [(tree.index[c.body],) * 2 for c in capsules]
-    ends = np.array([[one.p_a, one.p_b] for one in (*springs, *capsules)])
-    radius = np.array([*(s.diameter / 2 for s in springs), *(c.radius for c in capsules)])
-    pairs = [(i, j) for i in range(len(springs)) for j in range(i + 1, len(springs))]
-    pairs += [
-        (i, j) for i in range(len(springs)) for j in range(len(springs), len(bodies)) if bodies[j][0] not in bodies[i]
-    ]
-    first, second = (np.array([pair[side] for pair in pairs], int) for side in (0, 1))
-
-    def distances(q: Array) -> Array:
-        poses = tree.poses(q)
-        p = [np.stack([poses.point(b[e], at[e]) for b, at in zip(bodies, ends, strict=True)], 1) for e in (0, 1)]
-        gap = closest(p[0][:, first], p[1][:, first], p[0][:, second], p[1][:, second])[0]
-        return gap - radius[first] - radius[second]
-
-    label = [one.name for one in (*springs, *capsules)]
-    return [(label[i], label[j]) for i, j in pairs], distances
 
 
 def _lines(mechanism: Mechanism, q: Array) -> list[Line]:

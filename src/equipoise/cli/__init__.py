@@ -14,6 +14,7 @@ import typer
 
 from ..errors import EquipoiseError
 from . import (  # each registers its commands, in this order of the help
+    adjust,
     check,
     clearance,
     demo,
@@ -30,6 +31,7 @@ from . import (  # each registers its commands, in this order of the help
 from .app import app
 
 __all__ = [
+    "adjust",
     "app",
     "check",
     "clearance",

@@ -47,8 +47,7 @@ def check(
             from ..robust import sweep
 
             report("sweeping payloads", 0.0)
-            low, high, place = options.payload(payload, payload_at)
-            swept = sweep(mechanism, low, high, payload_on, place, steps=steps)
+            swept = sweep(mechanism, options.payload(mechanism, payload, payload_on, payload_at), steps=steps)
             balance = swept.worst
     good = balance.balanced(share or 0.0, torque)
     if json:

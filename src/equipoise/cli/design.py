@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import InputError
 from . import terminal
 from .app import File, Json, app
 
@@ -71,8 +72,12 @@ def design(
         list[str] | None,
         typer.Option(metavar="[SPRING=]LENGTH", help="make the best of springs with a free length; may be repeated"),
     ] = None,
+    clearance: Annotated[
+        str | None, typer.Option(help="move springs until they keep this from each other and from the file's capsules")
+    ] = None,
+    diameter: Annotated[str | None, typer.Option(help="with --clearance: outer diameter of the springs")] = None,
     stiffness_factor: Annotated[
-        float, typer.Option(min=1, help="with --free-length: stiffness may change by this factor")
+        float, typer.Option(min=1, help="with --free-length or --clearance: stiffness may change by this factor")
     ] = 5.0,
     preload: Annotated[
         str, typer.Option(help="with --free-length: the share of it that initial tension may take away")
@@ -116,6 +121,10 @@ def design(
         given |= options.settings(set_ or [], METHODS[method].parameters)
     wound = {"stiffness_factor": stiffness_factor, "preload": options.share(preload, "--preload")}
     lengths = options.free_lengths(free_length or [])
+    room = None if clearance is None else options.length(clearance, "--clearance")
+    thick = None if diameter is None else options.positive_length(diameter, "--diameter")
+    if room is None and thick is not None:
+        raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
     if output:
         check_savable(output)  # before the work, not after it
@@ -125,9 +134,11 @@ def design(
         terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
     with terminal.progress_bar("designing") as report:
         found = run(mechanism, method, progress=report, **given)
-        if lengths is not None:
-            report("giving the springs a free length", 0.0)
-            found = found.with_free_length(lengths, **wound)
+        if thick is not None:
+            found = found.with_diameter(thick)
+        if lengths is not None or room is not None:
+            report("moving the springs", 0.0)
+            found = found.with_ordinary_springs(lengths, clearance=room, **wound)
         report("judging the design", 0.0)
         balance = found.balance
         if output:

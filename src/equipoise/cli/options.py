@@ -11,6 +11,7 @@ from ..units import to_si
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
+    from ..synthesis.payload import Payload
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -44,17 +45,19 @@ def quantity(text: str, dimension: str, option: str) -> float:
         raise InputError(Fault((option,), str(error))) from None
 
 
-def payload(masses: str, place: str) -> tuple[float, float, tuple[float, float, float]]:
-    """``LOW,HIGH`` [kg] and ``X,Y,Z`` [m].
+def payload(mechanism: Mechanism, masses: str, body: str, place: str) -> Payload:
+    """``LOW,HIGH`` [kg] on a body at ``X,Y,Z`` [m].
 
     Raises:
-        InputError: not two masses, or not three lengths.
+        InputError: not two masses, not three lengths, or no such body.
     """
+    from ..synthesis.payload import Payload
+
     bounds = [quantity(text, "mass", "--payload") for text in masses.split(",")]
     point = [length(text, "--payload-at") for text in place.split(",")]
     if len(bounds) != 2 or len(point) != 3:
         raise InputError("--payload: expected LOW,HIGH such as 0,2kg, and --payload-at X,Y,Z such as 0,0,50mm")
-    return bounds[0], bounds[1], (point[0], point[1], point[2])
+    return Payload.at(mechanism, bounds, body, point)
 
 
 def free_lengths(texts: list[str]) -> float | dict[str, float] | None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..robust import Sweep, Tolerance
+from ..robust import Adjustment, Sweep, Tolerance
+from ..robust.moves import Way
 from .style import number
 
 LISTED = 8  # parameters that are named
@@ -45,6 +46,43 @@ def sweep_table(found: Sweep) -> Table:
     for mass, balance in zip(found.payloads, found.balances, strict=True):
         floor = 1e-10 * float(balance.unbalanced.max.max(initial=0))
         table.add_row(f"{mass:.4g} kg", *(number(float(v) if v > floor else 0.0) for v in balance.residual.max))
+    return table
+
+
+def adjustment_lines(found: Adjustment) -> Iterator[RenderableType]:
+    """What to move, what each move alone would leave, and the best fixed design."""
+    best, (low, high) = found.best, found.payload.span
+    answer = (
+        "EXACT at both ends" if found.exact else "KEEPS THE BALANCE" if found.keeps else "DOES NOT KEEP THE BALANCE"
+    )
+    style = "bold green" if found.exact or found.keeps else "bold yellow"
+    share = 0.0 if best.share < 1e-9 else best.share
+    yield Text(f"{answer}: {100 * share:.3g} % of what the payload does is left", style=style)
+    yield Text(f"from {low:.4g} kg to {high:.4g} kg on {found.payload.link}, move:")
+    yield _moves([best])
+    yield Text("each on its own, as far as it does any good:")
+    yield _moves(way for way in found.ways if way.share < 1 - 1e-3)
+    yield Text("fixed, set for the middle: the largest residual, and the least that any fixed springs leave")
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for title in ("joint", "fixed", "least", "unit"):
+        table.add_column(title, justify="left" if title == "joint" else "right", no_wrap=True)
+    balance = found.ends[0]
+    for name, unit, left, least in zip(balance.coordinates, balance.units, found.left, found.bound, strict=True):
+        table.add_row(Text(name), number(float(left)), number(float(least)), "N m" if unit == "rad" else "N")
+    yield table
+
+
+def _moves(ways: Iterable[Way]) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    titles = ("spring", "what", "from [mm]", "to [mm]", "travel [mm]", "left [%]", "energy [J]")
+    for title in titles:
+        table.add_column(Text(title), justify="left" if title in titles[:2] else "right")
+    for way in ways:
+        for i, move in enumerate(way.moves):
+            places = [", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) for p in (move.low, move.high)]
+            share = 0.0 if way.share < 1e-9 else way.share
+            whole = (f"{100 * share:.3g}", f"{way.work[0]:.3g} to {way.work[1]:.3g}") if i == 0 else ("", "")
+            table.add_row(Text(move.spring), move.what, *places, f"{1e3 * move.travel:.1f}", *whole)
     return table
 
 

@@ -124,12 +124,19 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
 
 
 def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
-    """What the free lengths cost: peak residual, and how much stiffer and stronger the springs get."""
-    yield Text(
-        f"  free length: peak residual {percent(found.ideal.relative)} of the unbalanced peak without it, "
-        f"{percent(found.plain.relative)} with it, {percent(found.balance.relative)} optimised "
-        f"({found.gain:.3g} times smaller)"
-    )
+    """What free lengths and room cost: peak residual, and how much stiffer and stronger the springs get."""
+    if any(found.free_length.values()):
+        yield Text(
+            f"  free length: peak residual {percent(found.ideal.relative)} of the unbalanced peak without it, "
+            f"{percent(found.plain.relative)} with it, {percent(found.balance.relative)} optimised "
+            f"({found.gain:.3g} times smaller)"
+        )
+    if found.room is not None:
+        before, after = (f"{1e3 * room.least:.4g} mm" for room in found.room)
+        yield Text(
+            f"  clearance: least distance {before} before and {after} now, peak residual "
+            f"{percent(found.plain.relative)} of the unbalanced peak before and {percent(found.balance.relative)} now"
+        )
     for row in found.to_dict()["springs"]:
         (k, new_k), (force, new_force) = row["stiffness"], row["max_force"]
         yield Text(

@@ -77,7 +77,7 @@ class Design(Shown):
         exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.
         infeasible: the proof that they cannot.
         front: the best design for each number of springs, when it was asked for.
-        ordinary: what was lost when the springs got a free length.
+        ordinary: what was lost when the springs got a free length, or room.
     """
 
     mechanism: Mechanism
@@ -130,8 +130,8 @@ class Design(Shown):
             return None
         return max(0.0, self.residual - self.bound) / self.unbalanced if self.unbalanced else 0.0
 
-    def with_free_length(self, free_length: float | Mapping[str, float], **options: Any) -> Design:
-        """The same design made the best of with ordinary springs; see `free_length.ordinary`. Its bound is no more."""
+    def with_ordinary_springs(self, free_length: float | Mapping[str, float] | None = None, **options: Any) -> Design:
+        """The same with free lengths, or room for its springs; see `free_length.ordinary`. Its bound is no more."""
         from .free_length import ordinary
 
         found = ordinary(self.mechanism, free_length, **options)
@@ -145,6 +145,11 @@ class Design(Shown):
         ).with_provenance()  # fmt: skip
         design.__dict__["balance"] = replace(found.balance, mechanism=design.mechanism)  # judged once
         return design
+
+    def with_diameter(self, diameter: float) -> Design:
+        """The same design with springs of an outer diameter [m]."""
+        springs = (replace(spring, diameter=diameter) for spring in self.mechanism.springs)
+        return replace(self, mechanism=self.mechanism.with_springs(springs))
 
     def with_provenance(self) -> Design:
         """The same design whose mechanism says how it was made."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import check
-from ..errors import Fault, InputError
+from ..errors import Fault, InputError, nearest
 from ..io.text import Names
 from ..mechanism import Mechanism, PointMass
 from ..spring import Spring
@@ -44,13 +44,21 @@ class Payload:
             at = link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)
         else:
             at = vectors("payload_at", {link.name: place}, [link.name])[link.name]
-        masses = (0.0,) if masses is None else masses
-        if len(masses) not in (1, 2):
-            raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
-        low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
-        if high < low:
-            raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
+        low, high = _range((0.0,) if masses is None else masses)
         return Payload(link.name, low, high, at)
+
+    @staticmethod
+    def at(mechanism: Mechanism, masses: Sequence[float], body: str, place: Sequence[float] = (0, 0, 0)) -> Payload:
+        """One mass or a range [kg] at a point [m] of any body that moves.
+
+        Raises:
+            InputError: not one or two masses, no such body, or not a point.
+        """
+        if body not in mechanism.body_names:
+            problem = f"there is no body {nearest(body, mechanism.body_names)}"
+            raise InputError(Fault(("payload_on",), problem, mechanism.body_names))
+        low, high = _range(masses)
+        return Payload(body, low, high, vectors("payload_at", {body: place}, [body])[body])
 
     @property
     def middle(self) -> float:
@@ -74,3 +82,12 @@ class Payload:
         """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
         ends = [check(self.on(mechanism, mass).with_springs(springs)).residual.max for mass in (self.low, self.high)]
         return dict(zip(mechanism.coordinates, np.maximum(*ends).tolist(), strict=True))
+
+
+def _range(masses: Sequence[float]) -> tuple[float, float]:
+    if len(masses) not in (1, 2):
+        raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
+    low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
+    if high < low:
+        raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
+    return low, high

@@ -1,0 +1,129 @@
+"""Following a payload: closed forms of one link, exact balance of an arm at both ends, and the best fixed springs."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import zoo
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from robots import lee_chen_springs
+
+import equipoise as eq
+from equipoise.errors import InputError
+from equipoise.robust import adjust
+from equipoise.synthesis.payload import Payload
+
+
+def pendulum(low=0.0, high=2.0):
+    m = zoo.pendulum()
+    return m, Payload.at(m, (low, high), "arm", (0.4, 0.0, 0.0))
+
+
+@settings(deadline=None, max_examples=15)
+@given(low=st.floats(0, 1), more=st.floats(0.1, 3))
+def test_one_link_in_closed_form(low, more):
+    """k a b = m g l + p g r: either distance grows in proportion, and the work is k/2 (c'^2 - c^2) + (g p r) sin."""
+    m, payload = pendulum(low, low + more)
+    found = adjust(m, payload)
+    assert found.exact
+    ways = {way.moves[0].what: way for way in found.ways}
+    spring = m.springs[0]
+    for what, size in (("p_a", 0.2), ("p_b", 0.15)):
+        move = ways[what].moves[0]
+        wanted = [size * (1 + mass * 0.4 / (2 * 0.3)) for mass in (low, low + more)]
+        assert [np.linalg.norm(move.low), np.linalg.norm(move.high)] == pytest.approx(wanted, rel=1e-9)
+        assert move.travel == pytest.approx(wanted[1] - wanted[0], rel=1e-9)
+        middle = spring.stiffness / 2 * (wanted[1] ** 2 - wanted[0] ** 2)
+        swing = zoo.G * more * 0.4
+        assert ways[what].work == pytest.approx((middle - swing, middle + swing), rel=1e-6, abs=1e-6)
+    assert found.best.moves[0].what == "p_b"  # the shorter one moves less
+    assert ways["free_length"].share > 0.9  # it only turns the spring's force down
+
+
+def test_every_way_leaves_what_it_says_by_the_reference():
+    m = lee_chen_springs()
+    payload = Payload.at(m, (0.0, 2.0), m.body_names[-1], (0.2, 0.0, 0.0))
+    found = adjust(m, payload, tolerance=1e-4)
+    assert found.keeps
+    assert found.best.share <= 1e-4
+    assert len(found.best.moves) == 2  # two links carry the payload
+    for balance in found.ends:
+        assert balance.relative < 1e-3
+    for way in found.ways:
+        assert way.share > 0.1  # and no spring can do it alone
+
+
+def test_no_fixed_springs_leave_less_than_the_bound():
+    m, payload = pendulum()
+    found = adjust(m, payload)
+    assert found.left == pytest.approx(found.bound, rel=1e-9)
+    assert found.bound == pytest.approx([zoo.G * 0.4])
+    for factor in np.linspace(0.3, 4.0, 30):
+        springs = (replace(m.springs[0], stiffness=factor * m.springs[0].stiffness),)
+        assert payload.residual(m, springs)["shoulder"] >= found.bound[0] * (1 - 1e-9)
+
+
+def test_a_spring_with_free_length_is_adjusted_as_well_as_it_can_be():
+    """Not exact, but no nearby attachment leaves less."""
+    m = zoo.pendulum(free_length=0.02)
+    found = adjust(m, Payload.at(m, (0.0, 1.0), "arm", (0.3, 0.0, 0.0)))
+    assert not found.keeps
+    way = next(way for way in found.ways if way.moves[0].what == "p_b")
+    payload = Payload.at(m, (1.0,), "arm", (0.3, 0.0, 0.0))
+    rms = eq.check(payload.on(way.high, 1.0), samples=2000).residual.rms[0]
+    for factor in (0.97, 1.03):
+        spring = way.high.springs[0]
+        x, y, z = (factor * value for value in spring.p_b)
+        other = way.high.with_springs([replace(spring, p_b=(x, y, z))])
+        assert eq.check(payload.on(other, 1.0), samples=2000).residual.rms[0] > rms
+
+
+def test_command_line(run, tmp_path):
+    file, fixed = tmp_path / "arm.yaml", tmp_path / "fixed.yaml"
+    eq.save(zoo.pendulum(), file)
+    options = ("--payload", "0,2kg", "--payload-on", "arm", "--payload-at", "0.4,0,0")
+    code, out, _ = run("adjust", file, *options, "-o", fixed, "--json")
+    answer = json.loads(out)
+    assert code == 0
+    assert answer["exact"]
+    assert answer["fixed"]["residual"] == pytest.approx(answer["fixed"]["bound"])
+    sweep = json.loads(run("check", fixed, *options, "--json")[1])["payload"]
+    assert sweep["exact"] == [False, False, True, False, False]
+    assert max(row[0] for row in sweep["residual"]) == pytest.approx(zoo.G * 0.4)
+    out = run("adjust", file, *options)[1]
+    for text in ("EXACT at both ends", "p_b", "200.0", "energy [J]", "least"):
+        assert text in out
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"--payload": "2,1"}, "smallest comes first"),
+        ({"--payload": "1,1"}, "must have a range"),
+        ({"--payload": "1"}, "expected LOW,HIGH"),
+        ({"--payload": "1,2 m"}, "--payload"),
+        ({"--payload": "0,nan"}, "found 'nan'"),
+        ({"--payload": "-1,2"}, "at least 0"),
+        ({"--payload-on": "amr"}, "did you mean 'arm'"),
+        ({"--payload-on": "world"}, "loads no joint"),
+        ({"--payload-at": "0,0"}, "X,Y,Z"),
+        ({"--tolerance": "2"}, "--tolerance"),
+        ({"--tolerance": "0"}, "tolerance"),
+        ({"-o": "missing/fixed.yaml"}, "missing"),
+    ],
+)
+def test_bad_options(run, tmp_path, changed, message):
+    file = tmp_path / "arm.yaml"
+    eq.save(zoo.pendulum(), file)
+    options = {"--payload": "0,2kg", "--payload-on": "arm"} | changed
+    code, out, err = run("adjust", file, *(text for pair in options.items() for text in pair))
+    assert (code, out) == (2, "")
+    assert message in err
+
+
+def test_without_springs():
+    m = zoo.pendulum().with_springs(())
+    with pytest.raises(InputError, match="no springs to adjust"):
+        adjust(m, Payload.at(m, (0.0, 1.0), "arm"))
