@@ -40,7 +40,7 @@ class Run:
     tolerance: Tolerance | str | None = None
 
 
-def run(balance: Balance, extras: tuple[str, ...], seed: int, report: Progress) -> Run:
+def run(balance: Balance, extras: tuple[str, ...], seed: int, radius: float | None, report: Progress) -> Run:
     """Run what is asked for; what a mechanism does not allow is no error."""
     m = balance.mechanism
 
@@ -54,7 +54,9 @@ def run(balance: Balance, extras: tuple[str, ...], seed: int, report: Progress) 
             return str(why)
 
     simulated = attempt(
-        "simulation", "simulating", lambda: release(m, seconds=SECONDS, poses=POSES, seed=seed, progress=report)
+        "simulation",
+        "simulating",
+        lambda: release(m, seconds=SECONDS, poses=POSES, seed=seed, radius=radius, progress=report),
     )
     made = attempt("hardware", "choosing springs to wind", lambda: bill(balance, progress=report))
     # lengths of loops cannot scatter on their own: they would not close
@@ -103,6 +105,9 @@ def _simulation(found: Release) -> list[Block]:
     ]
     head = ("coordinate", "without springs", "with springs", "unit")
     blocks.append(Table.of("Torque that holds these poses, by an independent engine", head, rows))
+    if found.radius is not None:
+        sphere = f"Bodies without an inertia are uniform spheres of {1e3 * found.radius:g} mm radius, an assumption"
+        blocks.append(Paragraph(f"{sphere} that changes how they move and not whether they stay."))
     return [*blocks, Paragraph(f"Engine: {found.settings}.")]
 
 

@@ -28,6 +28,7 @@ def make(
     *,
     extras: Iterable[str] = EXTRAS,
     seed: int = 0,
+    radius: float | None = None,
     file: Path | None = None,
     command: str = "",
     progress: Progress | None = None,
@@ -37,6 +38,7 @@ def make(
     Args:
         extras: of `EXTRAS`, what else to look into; where a mechanism does not allow one, its section says why.
         seed: of the random poses and builds of the extras.
+        radius: [m] of the uniform spheres that stand for bodies without an inertia in the simulation.
         file: where the mechanism is from; command: what gives this report again.
 
     Raises:
@@ -47,7 +49,7 @@ def make(
         if name not in EXTRAS:
             raise InputError(Fault(("with",), f"no section {nearest(name, EXTRAS)}", EXTRAS))
     report = progress or (lambda what, share: None)
-    found = built.run(balance, wanted, seed, report)
+    found = built.run(balance, wanted, seed, radius, report)
     report("drawing", 0.0)
     results = {name: getattr(found, name) for name in EXTRAS}
     return Report(
