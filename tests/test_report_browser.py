@@ -32,8 +32,7 @@ def browser() -> Iterator[Browser]:
 def ur5(tmp_path_factory) -> Path:
     """The report of the UR5 made weightless by three springs, with everything in it."""
     path = tmp_path_factory.mktemp("report") / "ur5.html"
-    design = eq.design(robot("ur5"), span=3, radius=0.15, springs=3)
-    save_report(make(design.balance, radius=0.05, command="equipoise report ur5.yaml -o ur5.html"), path)
+    save_report(make(eq.design(robot("ur5"), span=3, radius=0.15, springs=3).balance), path)
     return path
 
 

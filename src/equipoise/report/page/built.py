@@ -5,13 +5,15 @@ Each is there when it was asked for; where it cannot be, it says why.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
+from ...arrays import Array
 from ...balance import Balance
+from ...energy.fourier import EXACT
 from ...errors import EquipoiseError
 from ...hardware import Bill, bill
 from ...hardware.bill import way_dict
@@ -100,7 +102,7 @@ def _simulation(found: Release) -> list[Block]:
         blocks.append(Paragraph(text))
     bare, held = (np.abs(x).max(axis=0) for x in (found.unbalanced, found.design.holding))
     rows = [
-        (name, Number(float(a), f"{a:.4g}"), Number(float(b), f"{b:.2g}"), _unit(unit))
+        (name, _plain(float(a)), Number(float(b), f"{b:.2g}"), _unit(unit))
         for name, unit, a, b in zip(found.coordinates, found.units, bare, held, strict=True)
     ]
     head = ("coordinate", "without springs", "with springs", "unit")
@@ -121,8 +123,8 @@ def _hardware(found: Bill) -> list[Block]:
         s, about = way.winding.spring, way_dict(item, way, found.options.limits)
         rows.append([
             item.spring.name, way.kind, _plain(way.winding.count), f"{s.wire.standard} {s.wire.name}",
-            _plain(s.d / MM, 3), _plain(s.outer / MM), _plain(s.n), _plain(s.free_length / MM),
-            _plain(about["max_force"]), _plain(about["static_margin"], 3), _plain(1000 * s.mass),
+            _plain(s.d / MM), _plain(s.outer / MM), _plain(s.n), _plain(s.free_length / MM),
+            _plain(about["max_force"]), _plain(about["static_margin"]), _plain(1000 * s.mass),
         ])  # fmt: skip
     head = (
         "spring", "made as", "side by side", "wire", "wire d [mm]", "outer d [mm]", "coils", "length [mm]",
@@ -134,10 +136,8 @@ def _hardware(found: Bill) -> list[Block]:
     text = f"Built with these springs, their masses and laws included, {100 * found.left.share:.3g} % of the largest "
     text += f"unbalanced torque is left; the springs weigh {1000 * found.mass:.4g} g together."
     balance = found.balance
-    left = [
-        (name, _plain(float(found.left.residual[j]), 3), _plain(float(found.left.friction[j]), 3), _unit(unit))
-        for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True))
-    ]
+    loads = (found.left.residual, found.left.friction)
+    left = _loads(balance.coordinates, balance.units, loads, float(balance.unbalanced.max.max(initial=0)))
     head = ("coordinate", "largest residual", "largest friction of the springs' mounts", "unit")
     return [
         Paragraph(text, strong=True),
@@ -156,17 +156,8 @@ def _tolerance(found: Tolerance) -> list[Block]:
     if found.mechanism.loops:
         text += " Lengths do not scatter here, because loops would not close."
     p95 = np.percentile(found.peak, 95, axis=0)
-    floor = 1e-9 * float(p95.max(initial=0))
-    rows = [
-        (
-            name,
-            *(_plain(value if value > floor else 0.0, 3) for value in map(float, cells)),
-            _unit(unit),
-        )
-        for name, unit, *cells in zip(
-            found.coordinates, found.units, found.nominal, found.peak.mean(axis=0), p95, strict=True
-        )
-    ]
+    loads = (found.nominal, found.peak.mean(axis=0), p95)
+    rows = _loads(found.coordinates, found.units, loads, float(p95.max(initial=0)))
     head = ("coordinate", "as drawn", "mean of all builds", "95 % of builds stay below", "unit")
     ranked = [(p.name, Number(share, f"{100 * share:.1f} %")) for p, share in found.ranked[:NAMED]]
     return [
@@ -176,8 +167,16 @@ def _tolerance(found: Tolerance) -> list[Block]:
     ]
 
 
-def _plain(value: float, digits: int = 4) -> Number:
-    return Number(value, number(value) if digits == 3 else f"{value:.{digits}g}")
+def _loads(names: Sequence[str], units: Sequence[str], loads: Sequence[Array], whole: float) -> list[list[Cell]]:
+    """A row for each coordinate; less than `EXACT` of the `whole` counts as nothing."""
+    return [
+        [name, *(Number(float(x[j]), number(float(x[j]) if x[j] > EXACT * whole else 0.0)) for x in loads), _unit(unit)]
+        for j, (name, unit) in enumerate(zip(names, units, strict=True))
+    ]
+
+
+def _plain(value: float) -> Number:
+    return Number(value, f"{value:.4g}")
 
 
 def _angle(x: float) -> str:

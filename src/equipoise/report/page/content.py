@@ -56,8 +56,9 @@ class Table:
 
     @property
     def numeric(self) -> tuple[bool, ...]:
-        """Which columns hold numbers."""
-        return tuple(any(isinstance(row[j], Number) for row in self.rows) for j in range(len(self.head)))
+        """Which columns hold nothing but numbers."""
+        columns = ([row[j] for row in self.rows if row[j] != ""] for j in range(len(self.head)))
+        return tuple(bool(cells) and all(isinstance(cell, Number) for cell in cells) for cells in columns)
 
 
 @dataclass(frozen=True)

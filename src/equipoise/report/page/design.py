@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import shlex
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -135,15 +134,20 @@ def certificate_section(balance: Balance) -> Section:
     if balance.mobility is not None:
         rows.append(("mobility by rank, by counting", f"{balance.mobility.numerical}, {balance.mobility.gruebler}"))
     blocks: list[Block] = [Table.of("Certificate", ("", "found"), rows)]
-    blocks += _bound(balance.mechanism.provenance)
+    blocks += _bound(balance)
     return Section("Certificate, bound and gap", tuple(blocks))
 
 
-def _bound(made: Mapping[str, Any]) -> Iterator[Block]:
+def _bound(balance: Balance) -> Iterator[Block]:
     """As the method that made the design wrote it into the file."""
+    made = balance.mechanism.provenance
     unbalanced, left, bound, gap = (made.get(name) for name in ("unbalanced", "residual", "bound", "certified_gap"))
     if not all(isinstance(value, (int, float)) for value in (unbalanced, left)) or not unbalanced or left is None:
-        yield Paragraph("The file does not say how its springs were chosen, so no bound is known.")
+        unknown = "The file does not say how its springs were chosen"
+        if balance.exact:
+            yield Paragraph(f"{unknown}. No others could leave less torque, because the balance is exact.")
+        else:
+            yield Paragraph(f"{unknown}, so it is not known how near the best possible it is.")
         return
     floor = EXACT * unbalanced
     rows: list[tuple[str, Cell]] = [
@@ -179,10 +183,12 @@ def origin_section(balance: Balance, file: Path | None, command: str) -> Section
     """How to get the same again, and where it is from."""
     m, rows = balance.mechanism, [("report by", f"equipoise {__version__}")]
     blocks: list[Block] = []
+    if command:
+        blocks = [
+            Paragraph("With the same file, this command gives the same report; with --json it prints the numbers too.")
+        ]
+        blocks.append(Code(command, "Command"))
     if file is not None:
-        check = f"equipoise check {shlex.quote(file.name)} --json"
-        blocks = [Paragraph("With the file below, these commands give the same report and its numbers:")]
-        blocks.append(Code(f"{command}\n{check}", "Commands"))
         rows += [("file", file.name), ("SHA-256 of the file", hashlib.sha256(file.read_bytes()).hexdigest())]
     rows += [(str(name), _option(value)) for name, value in m.provenance.items()]
     blocks.append(Table.of("Provenance", ("", "found"), rows))
@@ -195,6 +201,8 @@ def _option(value: Any) -> str:
         return ", ".join(f"{name}: {_option(one)}" for name, one in value.items()) or "none"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_option(one) for one in value) + "]"
+    if value is None or isinstance(value, bool):
+        return "yes" if value else "no" if value is False else "none"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -123,7 +123,8 @@ def scheme(balance: Balance, key: str = "scheme") -> Picture:
     title = f"Schematic of {style.clean(mechanism.name, 60)}"
     ends = "; ".join(f"spring {i} from {s.body_a} to {s.body_b}" for i, s in enumerate(mechanism.springs, start=1))
     said = f"Links, joints and ground as lines, circles and hatching. {ends or 'No springs'}."
-    caption = f"{title}: a and b are the ends of each spring, k its stiffness; the numbers are in the tables below."
+    letters = ": a and b are the ends of each spring, k its stiffness; the numbers are in the tables below"
+    caption = f"{title}{letters if ends else ''}."
     return Picture(inline(schematic(mechanism, legend=False).svg(), key, title, said), caption, said)
 
 
