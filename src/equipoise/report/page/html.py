@@ -50,9 +50,9 @@ def _table(table: Table) -> str:
     for first, *rest in table.rows:
         cells = "".join(_cell(cell, right) for cell, right in zip(rest, numeric[1:], strict=True))
         rows.append(f'<tr><th scope="row">{_text(first)}</th>{cells}</tr>')
-    caption = escape(table.caption)
+    caption, dense = escape(table.caption), " class=dense" if len(table.head) > 8 else ""
     return (
-        f'<div class="wide" tabindex="0" role="region" aria-label="{caption}"><table><caption>{caption}</caption>'
+        f'<div class="wide" tabindex="0" role="region" aria-label="{caption}"><table{dense}><caption>{caption}</caption>'
         f"<thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
     )
 

@@ -21,6 +21,7 @@ from .content import Picture
 
 SIZE = (9.0, 4.6)  # [in] the two poses
 STEPS = 121  # of the motion
+NO_BREAK = "\N{NO-BREAK SPACE}"
 NAMESPACE = re.compile(r"\{[^}]*\}")
 COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b|\bwhite\b")
 VARIABLE = re.compile(r"var\(--[\w-]+, (#\w+)\)")
@@ -170,7 +171,8 @@ def _curves(key: str, title: str, unit: str, way: Array, series: dict[str, Array
     title = f"{title}, from the left pose to the right one"
     text = svg.curves(way, series, "share of the way, all coordinates moving evenly", unit, title)
     said = ElementTree.fromstring(text).get("aria-label", "")
-    return Picture(inline(text, key, title, said), f"{title} [{unit}].", said, narrow=True)
+    caption = f"{title} [{unit.replace(' ', NO_BREAK)}]."
+    return Picture(inline(text, key, title, said), caption, said, narrow=True)
 
 
 def _springs(balance: Balance) -> str:
