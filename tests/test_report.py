@@ -174,6 +174,18 @@ def test_what_cannot_be_run_says_why():
             assert found.data(name)["not_run"] in found.texts("p")
 
 
+def test_of_many_coordinates_the_most_loaded_ones_are_pictured():
+    one = pendulum()
+    names = [f"arm {i}" for i in range(14)]
+    many = eq.Mechanism(
+        "many arms",
+        tuple(replace(one.bodies[0], name=name) for name in names),
+        tuple(replace(one.joints[0], name=name, child=name) for name in names),
+    )
+    found = Page(page(make(eq.check(many, samples=50), extras=())))
+    assert any("the 12 of 14 most loaded ones" in text for text in found.texts("figcaption"))
+
+
 def test_what_was_not_asked_for_is_not_there():
     found = written(pendulum())
     assert not {"Simulation", "Hardware", "Tolerance"} & set(found.texts("h2"))

@@ -52,8 +52,8 @@ def _table(table: Table) -> str:
         rows.append(f'<tr><th scope="row">{_text(first)}</th>{cells}</tr>')
     caption, dense = escape(table.caption), " class=dense" if len(table.head) > 8 else ""
     return (
-        f'<div class="wide" tabindex="0" role="region" aria-label="{caption}"><table{dense}><caption>{caption}</caption>'
-        f"<thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
+        f'<div class="wide" tabindex="0" role="region" aria-label="{caption}"><table{dense}>'
+        f"<caption>{caption}</caption><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
     )
 
 

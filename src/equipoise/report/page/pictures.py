@@ -140,7 +140,9 @@ def torque_bars(balance: Balance) -> list[Picture]:
         title = f"Largest holding {what}"
         text = svg.bars(names, before, after, [symbol] * len(names), title, floor)
         said = ElementTree.fromstring(text).get("aria-label", "")
-        caption = f"{title} of each coordinate: grey without springs, green with them."
+        all_of_unit = balance.units.count(unit)
+        which = "each coordinate" if len(rows) == all_of_unit else f"the {len(rows)} of {all_of_unit} most loaded ones"
+        caption = f"{title} of {which}: grey without springs, green with them."
         found.append(Picture(inline(text, f"bars-{unit}", title, said), caption, said, narrow=True))
     return found
 
