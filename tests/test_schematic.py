@@ -89,8 +89,25 @@ def test_the_legend_gives_stiffness_bodies_and_places():
     said = " | ".join(label.text for label in drawing.labels)
     for i, spring in enumerate(lee_chen_springs().springs):
         assert f"{spring.stiffness:.5g} N/m" in said
-        assert f"{symbol('b', i)}  {spring.body_b} (" in said
+        assert symbol("k", i) in said
+        assert f"{spring.body_b} (" in said
     assert all(0 < label.at[1] < drawing.height for label in drawing.labels)
+
+
+def test_long_names_do_not_run_into_each_other_in_the_legend():
+    long = "a name that is longer than any column"
+    springs = [eq.Spring(long, "world", (0, 0, 0.2), long, (-0.0531, -0.0681, 0.1403), 12345.6)]
+    joint = replace(pendulum().joints[0], child=long)
+    drawing = schematic(eq.Mechanism("long", (eq.Body(long, 2.0, (0.3, 0, 0)),), (joint,), springs=tuple(springs)))
+    row = sorted((label for label in drawing.labels if label.size < 3), key=lambda label: label.at[0])
+    for y in {label.at[1] for label in row}:
+        ends = [(-1.0, 0.0)]
+        for label in (label for label in row if label.at[1] == y):
+            wide = 0.62 * label.size * len(label.text)  # DejaVu Sans has about this
+            left = label.at[0] - (wide if label.anchor == "end" else 0)
+            assert left >= ends[-1][1], label.text
+            ends.append((left, left + wide))
+        assert ends[-1][1] <= WIDTH
 
 
 def test_svg_is_well_formed_and_the_same_each_time():

@@ -44,7 +44,7 @@ def schematic(mechanism: Mechanism, *, legend: bool = True) -> Drawing:
     view, q = choose(mechanism, skeleton)
     poses = Tree.of(mechanism).poses(q[1:])
     rows = len(mechanism.springs) if legend else 0
-    foot = ROW * (rows + 1) if rows else 0.0
+    foot = ROW * (rows + 1) if rows else 0.0  # the heads stand on the picture's lower edge
     drawing = Drawing(WIDTH, HEIGHT + foot)
     _Pen(drawing, skeleton, poses, view, foot).draw()
     if rows:
@@ -149,15 +149,19 @@ class _Pen:
 
 
 def _legend(drawing: Drawing, mechanism: Mechanism, foot: float) -> None:
+    name, stiffness, ends = 9.0, 52.0, (54.0, 107.0)  # [mm] where the columns are
+    drawing.label((name, foot), "spring", SMALL, bold=True)
+    drawing.label((stiffness, foot), "stiffness", SMALL, "end", bold=True)
+    for x, letter in zip(ends, "ab", strict=True):
+        drawing.label((x, foot), f"{letter} [mm, its body's frame]", SMALL, bold=True)
     for i, spring in enumerate(mechanism.springs):
         y = foot - ROW * (i + 1)
         drawing.label((3.0, y), symbol("k", i), SMALL, bold=True)
-        drawing.label((9.0, y), style.clean(spring.name, 18), SMALL)
-        drawing.label((58.0, y), f"{spring.stiffness:.5g} N/m", SMALL, "end")
-        ends = ((61.0, "a", spring.body_a, spring.p_a), (110.0, "b", spring.body_b, spring.p_b))
-        for x, letter, body, p in ends:
+        drawing.label((name, y), style.clean(spring.name, 16), SMALL)
+        drawing.label((stiffness, y), f"{spring.stiffness:.5g} N/m", SMALL, "end")
+        for x, body, p in zip(ends, (spring.body_a, spring.body_b), (spring.p_a, spring.p_b), strict=True):
             place = ", ".join(f"{round(1e3 * value, 1) + 0.0:g}" for value in p)
-            drawing.label((x, y), f"{symbol(letter, i)}  {style.clean(body, 14)} ({place}) mm", SMALL)
+            drawing.label((x, y), f"{style.clean(body, 12)} ({place})", SMALL)
 
 
 def _pairs(points: list[Array] | Array) -> tuple[Pair, ...]:
