@@ -250,7 +250,7 @@ def test_an_internal_error_is_one_line(run, pendulum, monkeypatch):
 
 
 def test_help_of_every_command_has_an_example(run):
-    for command in ("check", "methods", "design", "layouts", "export", "reproduce", "demo"):
+    for command in ("check", "methods", "design", "layouts", "export", "report", "reproduce", "demo"):
         code, out, _ = run(command, "--help")
         assert code == 0
         assert "Example:" in out

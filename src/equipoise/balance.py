@@ -21,6 +21,7 @@ from .energy.potential import Potential, State
 from .errors import InputError
 from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
+from .notebook import Shown
 from .validate import MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
@@ -63,7 +64,7 @@ class SpringUse:
 
 
 @dataclass(frozen=True)
-class Balance:
+class Balance(Shown):
     """What is true of a mechanism with its springs.
 
     Attributes:

@@ -15,28 +15,37 @@ from .app import File, app
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
 
+DRAWINGS = {"svg": "equipoise.report.schematic", "dxf": "equipoise.report.attachments"}
+
 
 @app.command()
 def export(
     file: File,
-    to: Annotated[str, typer.Option("--to", help="yaml, urdf or mjcf", show_default=False)],
+    to: Annotated[str, typer.Option("--to", help="yaml, urdf, mjcf, svg or dxf", show_default=False)],
     output: Annotated[Path | None, typer.Option("-o", "--output", help="default: standard output")] = None,
 ) -> None:
-    """Write a mechanism in another format; springs become spatial tendons in MJCF and are left out of URDF.
+    """Write a mechanism in another format, or as a drawing.
+
+    Springs become spatial tendons in MJCF and are left out of URDF. SVG is a schematic with the letters a, b and k;
+    DXF has the attachment points in mm and needs the extra: pip install 'equipoise\\[cad]'.
 
     Example: [bold]equipoise export ur5-balanced.yaml --to mjcf -o ur5.xml[/bold]
+    Example: [bold]equipoise export ur5-balanced.yaml --to svg -o ur5.svg[/bold]
     """
     from importlib import import_module
 
     from ..errors import Fault, nearest
     from ..io import WRITERS
-    from ..io.files import write_text
+    from ..io.files import check_writable, write_text
 
-    if to not in WRITERS:
-        raise InputError(Fault(("--to",), f"unknown format {nearest(to, WRITERS)}", tuple(WRITERS)))
+    modules = {name: f"equipoise.io.{name}" for name in WRITERS} | DRAWINGS
+    if to not in modules:
+        raise InputError(Fault(("--to",), f"unknown format {nearest(to, modules)}", tuple(modules)))
+    if output is not None:
+        check_writable(output)
     with terminal.shown_warnings():
         mechanism = terminal.load(file)
-        write = import_module(f"equipoise.io.{to}").to_text
+        write = import_module(modules[to]).to_text
         text = write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
     if output is None:
         typer.echo(text, nl=False)

@@ -80,16 +80,21 @@ def render(path: str | os.PathLike[str], size: tuple[float, float], draw: Callab
         InputError: as `check_drawable`.
     """
     check_drawable(path)
+    write_bytes(path, picture(Path(path).suffix.lower(), size, draw))
+
+
+def picture(suffix: str, size: tuple[float, float], draw: Callable[[Any], None]) -> bytes:
+    """The same as the content of a file with the suffix .svg, .png or .pdf."""
     import matplotlib.style
     from matplotlib.figure import Figure
 
-    suffix, buffer = Path(path).suffix.lower(), io.BytesIO()
+    buffer = io.BytesIO()
     with matplotlib.style.context(["default", style.RC]), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph")  # a name in a script that the font lacks is no error
         figure = Figure(figsize=size, dpi=DPI, facecolor="white")
         draw(figure)
         figure.savefig(buffer, format=suffix[1:], dpi=DPI, metadata=METADATA[suffix])
-    write_bytes(path, buffer.getvalue())
+    return buffer.getvalue()
 
 
 def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:
@@ -131,11 +136,11 @@ def _poses(figure: Any, mechanism: Mechanism, balance: Balance) -> None:
         axes.set(xlim=limits[0], ylim=limits[1], aspect="equal")
         axes.set_axis_off()
         arm.draw(axes, skeleton, poses, i, view)
-        text = _holding(mechanism, balance, state.gravity_torque[i], state.torque[i])
+        text = holding(mechanism, balance, state.gravity_torque[i], state.torque[i])
         axes.text(0.5, -0.005, text, transform=axes.transAxes, ha="center", va="top", color=style.INK, parse_math=False)
 
 
-def _holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array) -> str:
+def holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array) -> str:
     """The largest holding torque in a pose, without and with springs."""
     if not len(before):
         return ""

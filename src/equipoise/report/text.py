@@ -65,7 +65,7 @@ def verdict(balance: Balance) -> Text:
         return Text("nothing moves: no coordinate to balance", style="yellow")
     if np.isinf(balance.relative):
         return Text(f"NOT BALANCED: the springs load joints that gravity does not; {basis}", style="bold yellow")
-    share = f"peak residual torque {_percent(balance.relative)} of the unbalanced peak"
+    share = f"peak residual torque {percent(balance.relative)} of the unbalanced peak"
     return Text(f"NOT EXACT: {share}; {basis}", style="bold yellow")
 
 
@@ -78,8 +78,8 @@ def torque_table(balance: Balance) -> Table:
     floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
     for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
         loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
-        bound = "-" if balance.bound is None else _torque(balance.bound[j], floor)
-        cells = [_torque(load[j], floor) for load in loads]
+        bound = "-" if balance.bound is None else torque(balance.bound[j], floor)
+        cells = [torque(load[j], floor) for load in loads]
         table.add_row(Text(name), *cells, bound, "N m" if unit == "rad" else "N")
     return table
 
@@ -102,10 +102,10 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses"
     yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
     floor = EXACT * design.unbalanced
-    yield Text(f"  residual    {_torque(design.residual, floor)} N m  = {_percent(share)} of unbalanced")
+    yield Text(f"  residual    {torque(design.residual, floor)} N m  = {percent(share)} of unbalanced")
     if design.bound is not None and design.certified_gap is not None:
-        least = f"{_torque(design.bound, floor)} N m  = {_percent(design.bound / design.unbalanced)}"
-        gap = f"gap {_percent(design.certified_gap)} of unbalanced"
+        least = f"{torque(design.bound, floor)} N m  = {percent(design.bound / design.unbalanced)}"
+        gap = f"gap {percent(design.certified_gap)} of unbalanced"
         why = (
             "the balance is exact"
             if METHODS[design.method].exact
@@ -127,15 +127,15 @@ def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
     """What free lengths and room cost: peak residual, and how much stiffer and stronger the springs get."""
     if any(found.free_length.values()):
         yield Text(
-            f"  free length: peak residual {_percent(found.ideal.relative)} of the unbalanced peak without it, "
-            f"{_percent(found.plain.relative)} with it, {_percent(found.balance.relative)} optimised "
+            f"  free length: peak residual {percent(found.ideal.relative)} of the unbalanced peak without it, "
+            f"{percent(found.plain.relative)} with it, {percent(found.balance.relative)} optimised "
             f"({found.gain:.3g} times smaller)"
         )
     if found.room is not None:
         before, after = (f"{1e3 * room.least:.4g} mm" for room in found.room)
         yield Text(
             f"  clearance: least distance {before} before and {after} now, peak residual "
-            f"{_percent(found.plain.relative)} of the unbalanced peak before and {_percent(found.balance.relative)} now"
+            f"{percent(found.plain.relative)} of the unbalanced peak before and {percent(found.balance.relative)} now"
         )
     for row in found.to_dict()["springs"]:
         (k, new_k), (force, new_force) = row["stiffness"], row["max_force"]
@@ -155,9 +155,9 @@ def front_table(design: Design) -> Table:
     for row in design.front:
         table.add_row(
             str(row.springs),
-            "exact" if row.exact else _torque(row.residual),
-            _percent(row.residual / design.unbalanced),
-            "-" if row.bound is None else _torque(row.bound),
+            "exact" if row.exact else torque(row.residual),
+            percent(row.residual / design.unbalanced),
+            "-" if row.bound is None else torque(row.bound),
             Text(" ".join(f"{a}:{b}" for a, b in row.pairs)),
         )
     return table
@@ -197,7 +197,8 @@ def _count(items: Sequence[object], noun: str) -> str:
     return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
 
 
-def _torque(value: float, floor: float = 0.0) -> str:
+def torque(value: float, floor: float = 0.0) -> str:
+    """A torque or force; less than `floor` counts as nothing."""
     if value == 0:
         return "0"
     if value < floor:
@@ -205,7 +206,8 @@ def _torque(value: float, floor: float = 0.0) -> str:
     return f"{value:.4f}" if value >= 1e-3 else f"{value:.1e}"
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """A share; less than the certificate's tolerance counts as nothing."""
     return "0 %" if share == 0 else f"< {100 * EXACT:.0e} %" if share < EXACT else f"{100 * share:.3g} %"
 
 

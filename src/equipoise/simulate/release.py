@@ -60,6 +60,7 @@ class Release:
         joints: names of the engine's joints, in the order of `Drift.moved`.
         settings: of the engine.
         unbalanced: (poses, n) the torque that holds the poses without springs [N m or N].
+        radius: [m] of the uniform spheres that stood for bodies without an inertia; None when there are none.
         soft: the name of the spring that lacked `SOFT` of its stiffness in `control`; None without springs.
     """
 
@@ -73,6 +74,7 @@ class Release:
     settings: Settings
     design: Drift
     unbalanced: Array
+    radius: float | None
     soft: str | None
     control: Drift | None
 
@@ -114,6 +116,7 @@ class Release:
             "unbalanced_torque": dict(zip(self.coordinates, np.abs(self.unbalanced).max(axis=0).tolist(), strict=True)),
             "constraint_error": self.design.constraint_error,
             "settings": str(self.settings),
+            "radius": self.radius,
             "control": None
             if self.control is None
             else {"spring": self.soft, "softer_by": SOFT, "max_drift": self.control.largest, "moves": self.meaningful},
@@ -170,7 +173,7 @@ def release(
     tree = engine.tree
     return Release(
         mechanism, tree.coordinates, tree.units, seconds, tolerance, q, names, engine.settings, design, unbalanced,
-        soft, moved,
+        radius if any(body.mass and body.inertia is None for body in mechanism.bodies) else None, soft, moved,
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .._version import __version__
 from ..balance import Balance, check
 from ..mechanism import Mechanism
+from ..notebook import Shown
 
 if TYPE_CHECKING:
     from .free_length import Ordinary
@@ -59,7 +60,7 @@ class Infeasible:
 
 
 @dataclass(frozen=True)
-class Design:
+class Design(Shown):
     """The answer of a method.
 
     Attributes:

@@ -1,0 +1,104 @@
+"""Make a report and write it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Callable, Iterable
+from importlib.util import find_spec
+from pathlib import Path
+
+from ...balance import Balance
+from ...errors import Fault, InputError, nearest
+from ...io.files import check_writable, write_bytes
+from .. import style
+from ..text import verdict
+from . import built, design
+from .built import EXTRAS, Progress
+from .content import Report
+from .html import page
+from .pdf import pdf
+
+NEEDS = ("jinja2", "matplotlib", "typst")
+WRITERS: dict[str, Callable[[Report], bytes]] = {".html": lambda report: page(report).encode(), ".pdf": pdf}
+
+
+def make(
+    balance: Balance,
+    *,
+    extras: Iterable[str] = EXTRAS,
+    seed: int = 0,
+    radius: float | None = None,
+    file: Path | None = None,
+    command: str = "",
+    progress: Progress | None = None,
+) -> Report:
+    """The report of a judged mechanism.
+
+    Args:
+        extras: of `EXTRAS`, what else to look into; where a mechanism does not allow one, its section says why.
+        seed: of the random poses and builds of the extras.
+        radius: [m] of the uniform spheres that stand for bodies without an inertia in the simulation.
+        file: where the mechanism is from; command: what gives this report again.
+
+    Raises:
+        InputError: an unknown extra.
+    """
+    wanted = tuple(extras)
+    for name in wanted:
+        if name not in EXTRAS:
+            raise InputError(Fault(("with",), f"no section {nearest(name, EXTRAS)}", EXTRAS))
+    report = progress or (lambda what, share: None)
+    found = built.run(balance, wanted, seed, radius, report)
+    report("drawing", 0.0)
+    results = {name: getattr(found, name) for name in EXTRAS}
+    return Report(
+        title=style.clean(balance.mechanism.name, 200),
+        verdict=verdict(balance).plain,
+        good=balance.exact,
+        sections=(
+            design.mechanism_section(balance),
+            design.torque_section(balance),
+            design.certificate_section(balance),
+            *built.sections(found),
+            design.conventions_section(balance),
+            design.origin_section(balance, file, command),
+        ),
+        data={"balance": balance.to_dict()}
+        | {
+            name: {"not_run": result} if isinstance(result, str) else result.to_dict()
+            for name, result in results.items()
+            if result is not None
+        },
+    )
+
+
+def check_report(path: str | os.PathLike[str]) -> None:
+    """Whether a report could be written there, asked before long work.
+
+    Raises:
+        InputError: another suffix than .html or .pdf, something is not installed, or the folder cannot be written to.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in WRITERS:
+        found = f"a report cannot be written as '{suffix}'"
+        raise InputError(Fault((), found, tuple(WRITERS), file=os.fspath(path)))
+    missing = [name for name in NEEDS if find_spec(name) is None]
+    if missing:
+        raise InputError(f"reports need {', '.join(missing)}: pip install 'equipoise[report]'")
+    check_writable(path)
+
+
+def save_report(report: Report, path: str | os.PathLike[str]) -> None:
+    """Write it, whole or not at all.
+
+    Raises:
+        InputError: as `check_report`.
+    """
+    check_report(path)
+    write_bytes(path, WRITERS[Path(path).suffix.lower()](report))
+
+
+def command(file: Path, output: Path, options: Iterable[str]) -> str:
+    """What is typed to get the report again."""
+    return shlex.join(["equipoise", "report", file.name, "-o", output.name, *options])
