@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from robots import lee_chen_springs
+from robots import lee_chen_springs, robot
 from zoo import free_length_pendulum, geared_pair, pendulum, vertical_slide
 
 import equipoise as eq
@@ -113,9 +113,19 @@ def test_everything_is_in_the_page(report):
         assert any(caption.startswith(text) for caption in captions), text
 
 
-def test_its_numbers_are_those_of_check(report, run):
-    found = report(LIN, "--samples", 300, "--seed", 3, "--with", "none")
-    _, out, _ = run("check", LIN, "--json", "--samples", 300, "--seed", 3)
+@pytest.fixture(scope="module")
+def ur5(tmp_path_factory) -> Path:
+    """The UR5 made weightless by three springs."""
+    path = tmp_path_factory.mktemp("ur5") / "ur5-balanced.yaml"
+    eq.save(eq.design(robot("ur5"), span=3, radius=0.15, springs=3).mechanism, path)
+    return path
+
+
+@pytest.mark.parametrize("name", ["ur5", "lin2010"])
+def test_its_numbers_are_those_of_check(report, run, ur5, name):
+    path = {"ur5": ur5, "lin2010": LIN}[name]
+    found = report(path, "--samples", 300, "--seed", 3, "--with", "none")
+    _, out, _ = run("check", path, "--json", "--samples", 300, "--seed", 3)
     checked = json.loads(out)
     assert found.data("balance") == checked
     shown = {float(own["value"]) for own in found.attributes("data") if own["value"] is not None}
@@ -270,6 +280,9 @@ def test_the_pdf_is_the_same_bytes_each_time(run, tmp_path):
         data.append(out.read_bytes())
     assert data[0].startswith(b"%PDF-")
     assert data[0] == data[1]
+    # tagged for screen readers: a language, heads of tables, a text for each of the five pictures
+    for text, least in ((b"/StructTreeRoot", 1), (b"/Lang", 1), (b"/TH", 10), (b"/Alt", 5)):
+        assert data[0].count(text) >= least, text
 
 
 def test_json_is_what_the_page_holds(run, tmp_path):
@@ -294,6 +307,8 @@ def test_json_is_what_the_page_holds(run, tmp_path):
         (["FILE", "-o", "out.html", "--with", ""], "no section ''"),
         (["FILE", "-o", "out.html", "--with", "none,hardware"], "no section 'none'"),
         (["FILE", "-o", "out.html", "--samples", "0"], "--samples"),
+        (["FILE", "-o", "out.html", "--radius", "wide"], "--radius"),
+        (["FILE", "-o", "out.html", "--radius", "2 kg"], "--radius"),
         (["FILE", "-o", "out.html", "--seed", "-1"], "--seed"),
         (["FILE"], "--output"),
         (["absent.yaml", "-o", "out.html"], "absent.yaml"),

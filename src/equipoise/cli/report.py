@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -37,7 +38,7 @@ def report(
     Example: [bold]equipoise report balanced.yaml -o balanced.pdf --with hardware[/bold]
     """
     from ..balance import check
-    from ..report.page.make import EXTRAS, check_report, command, make, save_report
+    from ..report.page.make import EXTRAS, check_report, make, save_report
     from . import options
 
     extras = [] if with_ == NONE else options.names(with_) or [""]
@@ -47,15 +48,15 @@ def report(
     size = None if radius is None else options.positive_length(radius, "--radius")
     check_report(output)  # before the work, not after it
     mechanism = terminal.load(file)
-    typed = [] if extras == list(EXTRAS) else ["--with", ",".join(extras) or NONE]
+    typed = ["equipoise", "report", file.name, "-o", output.name]  # what gives the same again
+    typed += [] if extras == list(EXTRAS) else ["--with", ",".join(extras) or NONE]
     for option, value in (("--samples", samples), ("--seed", seed or None), ("--radius", radius)):
         typed += [] if value is None else [option, str(value)]
     with terminal.progress_bar("judging") as progress:
         progress("judging the balance", 0.0)
         balance = check(mechanism, samples=samples, seed=seed)
         found = make(
-            balance, extras=extras, seed=seed, radius=size, file=file, command=command(file, output, typed),
-            progress=progress,
+            balance, extras=extras, seed=seed, radius=size, file=file, command=shlex.join(typed), progress=progress
         )  # fmt: skip
         save_report(found, output)
     if json:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Callable, Iterable
 from importlib.util import find_spec
 from pathlib import Path
@@ -97,8 +96,3 @@ def save_report(report: Report, path: str | os.PathLike[str]) -> None:
     """
     check_report(path)
     write_bytes(path, WRITERS[Path(path).suffix.lower()](report))
-
-
-def command(file: Path, output: Path, options: Iterable[str]) -> str:
-    """What is typed to get the report again."""
-    return shlex.join(["equipoise", "report", file.name, "-o", output.name, *options])
