@@ -23,7 +23,7 @@ from sphinx.util.docutils import SphinxDirective
 
 DOCS = Path(__file__).resolve().parents[1]
 MADE = "_generated"  # what the pages make, below the documentation's folder
-COLUMNS = 110
+COLUMNS = 92
 
 
 class Executed(SphinxDirective):
