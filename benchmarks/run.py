@@ -11,6 +11,7 @@ from pathlib import Path
 import measure
 import solving
 import speed
+import viewing
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -93,6 +94,7 @@ def main() -> None:
         path.write_text(text[: text.index(mark) + len(mark)] + "\n" + page + "\n")
         picture(growth, DOCS / "images" / "speed.svg")
     solving.main()
+    viewing.main()
 
 
 if __name__ == "__main__":
