@@ -26,7 +26,7 @@ from equipoise.io import mjcf
 from equipoise.reproduce.cho2012 import shoulder
 from equipoise.synthesis import METHODS
 from equipoise.synthesis import differential as d
-from equipoise.synthesis.shoulder import find
+from equipoise.synthesis.bevel.shoulder import find
 
 THETA = np.random.default_rng(0).uniform(-pi, pi, (200, 2))
 WEIGHT, B, H, K = 10.0, 0.05, 0.07, 900.0

@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.reproduce import Map, reproduce
 from equipoise.reproduce.cho2012 import GRID, TABLE_1, balanced, shoulder
 from equipoise.reproduce.record import half_unit
-from equipoise.synthesis.differential import ARRANGEMENTS, gravity_torque
+from equipoise.synthesis.bevel.differential import ARRANGEMENTS, gravity_torque
 
 WEIGHT = 6.7 * 9.81 * 0.164  # m g l [N m]
 

@@ -9,10 +9,10 @@ from test_exclusion import pairs
 from test_planar import crooked
 
 from equipoise.energy.planar import Installation, PlanarArm
-from equipoise.synthesis.criteria import failures, objections, sign_failures
-from equipoise.synthesis.exclusion import prove
-from equipoise.synthesis.installing import Equations, solve
-from equipoise.synthesis.layouts import default_layout
+from equipoise.synthesis.planar.criteria import failures, objections, sign_failures
+from equipoise.synthesis.planar.exclusion import prove
+from equipoise.synthesis.planar.installing import Equations, solve
+from equipoise.synthesis.planar.layouts import default_layout
 
 
 def failing(n: int, most: int):

@@ -11,10 +11,10 @@ from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
 from equipoise.mechanism import Mechanism
 from equipoise.synthesis import design
-from equipoise.synthesis.delta import full, one_per_leg
-from equipoise.synthesis.delta_legs import NotDelta, delta_legs
-from equipoise.synthesis.delta_robot import DeltaRobot
-from equipoise.synthesis.rocker import Guide
+from equipoise.synthesis.delta.legs import NotDelta, delta_legs
+from equipoise.synthesis.delta.method import full, one_per_leg
+from equipoise.synthesis.delta.robot import DeltaRobot
+from equipoise.synthesis.delta.rocker import Guide
 
 ODD = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, rods=0.12, com_2=0.15, com_4=0.3)
 """Nothing is special: AB is not CD, the radii differ, mass centres are off the middle."""

@@ -14,7 +14,7 @@ from equipoise.energy.blocks import StiffnessBlocks
 from equipoise.energy.equivalent import exchanged, resized, rotated, turned
 from equipoise.energy.planar import Installation, PlanarArm
 from equipoise.errors import InfeasibleError, UnsupportedError
-from equipoise.synthesis.installing import Solution, solve
+from equipoise.synthesis.planar.installing import Solution, solve
 
 ARM = PlanarArm.of(lee_chen())
 lengths = st.floats(0.02, 0.5)

@@ -5,7 +5,7 @@ from itertools import combinations, combinations_with_replacement
 
 import pytest
 
-from equipoise.synthesis.exclusion import Leaf, Proof, Split, prove, verify
+from equipoise.synthesis.planar.exclusion import Leaf, Proof, Split, prove, verify
 
 
 def pairs(n: int) -> list[tuple[int, int]]:

@@ -11,9 +11,9 @@ from test_exclusion import pairs
 
 import equipoise as eq
 from equipoise.errors import InputError
-from equipoise.synthesis.criteria import failures, sign_failures
-from equipoise.synthesis.exclusion import prove, verify
-from equipoise.synthesis.layouts import Search, _layouts, example_arm, name, search, span
+from equipoise.synthesis.planar.criteria import failures, sign_failures
+from equipoise.synthesis.planar.exclusion import prove, verify
+from equipoise.synthesis.planar.layouts import Search, _layouts, example_arm, name, search, span
 
 FEWEST = {  # THEORY section 5; n = 5 as in the paper's Table 2
     2: {"12"},

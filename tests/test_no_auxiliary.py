@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.kinematics import Tree
 from equipoise.synthesis.chain import chain
-from equipoise.synthesis.from_ground import fewest_springs
+from equipoise.synthesis.no_auxiliary.from_ground import fewest_springs
 
 LIFT = G * (M1 * H1 / L1 + M2)  # [N] k2 a2 of the arm of the zoo
 BALL, ANY, HINGE = ("spherical",), ("spherical", "revolute"), ("revolute",)

@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.energy.planar import PlanarArm
 from equipoise.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.synthesis import METHODS
-from equipoise.synthesis.layouts import default_layout, example_arm, name
+from equipoise.synthesis.planar.layouts import default_layout, example_arm, name
 
 ARM = Path(__file__).parents[1] / "examples" / "mechanisms" / "lee_chen_arm.yaml"
 OF_LENGTH = {  # links 2, 3, .. and the end link of Table 4

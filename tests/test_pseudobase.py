@@ -23,8 +23,8 @@ from equipoise.energy.potential import Potential
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.synthesis import METHODS
-from equipoise.synthesis.moments import moments, segments
-from equipoise.synthesis.parallelograms import mobility
+from equipoise.synthesis.pseudobase.moments import moments, segments
+from equipoise.synthesis.pseudobase.parallelograms import mobility
 
 
 def random_arm(seed: int, joints: int, branches: bool = False) -> eq.Mechanism:

@@ -6,8 +6,8 @@ import pytest
 from equipoise.balance import check
 from equipoise.reproduce import reproduce
 from equipoise.reproduce.simionescu2015 import two_axis_rocker
-from equipoise.synthesis.delta import one_per_leg
-from equipoise.synthesis.delta_robot import DeltaRobot
+from equipoise.synthesis.delta.method import one_per_leg
+from equipoise.synthesis.delta.robot import DeltaRobot
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,7 @@ from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
 from equipoise.reproduce import cho2012, lin2010
 from equipoise.simulate import Engine, EngineError, play, release
-from equipoise.synthesis.delta_robot import DeltaRobot
+from equipoise.synthesis.delta.robot import DeltaRobot
 
 SPHERE = 0.05  # [m]
 DEGREE = np.pi / 180

@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise import Body, Joint, Loop, Mechanism, PointMass, Spring, design, save
 from equipoise.reproduce import cho2012, lee2014, lin2010
-from equipoise.synthesis.delta_robot import DeltaRobot
+from equipoise.synthesis.delta.robot import DeltaRobot
 
 G = 9.81  # [m/s^2]
 LIFT = (0.0, -1.0, 0.0)

@@ -12,7 +12,7 @@ from . import terminal
 from .app import Json, app
 
 if TYPE_CHECKING:
-    from ..synthesis.layouts import Search
+    from ..synthesis.planar.layouts import Search
 
 FORMS = ("text", "latex")
 
@@ -40,7 +40,7 @@ def layouts(
     Example: [bold]equipoise layouts 4 --objective span[/bold]
     """
     from ..report.layouts import count_lines, layout_lines
-    from ..synthesis.layouts import search
+    from ..synthesis.planar.layouts import search
 
     if equations not in ("", *FORMS):
         raise InputError(Fault(("--equations",), f"unknown form {nearest(equations, FORMS)}", FORMS))
@@ -55,7 +55,7 @@ def layouts(
     else:
         from rich.text import Text
 
-        from ..synthesis.layouts import name
+        from ..synthesis.planar.layouts import name
 
         if excluded:
             terminal.show(Text(f"{name(one.layout)}: {one}", style="dim") for one in found.excluded)
@@ -69,7 +69,7 @@ def _write(found: Search, folder: Path) -> list[Path]:
     """The example arm with each layout's springs."""
     from ..io import save
     from ..io.files import make_folder
-    from ..synthesis.layouts import name
+    from ..synthesis.planar.layouts import name
 
     make_folder(folder)
     written = []

@@ -8,8 +8,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..synthesis.installing import upward
-from ..synthesis.layouts import Feasible, Search, labels, name, span
+from ..synthesis.planar.installing import upward
+from ..synthesis.planar.layouts import Feasible, Search, labels, name, span
 
 COSTS = {"springs": "springs", "span": "joints that springs span", "weighted": "weighted cost"}
 

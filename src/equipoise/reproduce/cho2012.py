@@ -19,7 +19,7 @@ from ..errors import InfeasibleError
 from ..kinematics import Tree
 from ..mechanism import Body, Joint, Mechanism
 from ..synthesis import Design, design
-from ..synthesis.differential import ARRANGEMENTS, SIDES, single_stiffness, stiffness
+from ..synthesis.bevel.differential import ARRANGEMENTS, SIDES, single_stiffness, stiffness
 from .record import Map, Reproduction, Row, half_unit, spread
 
 PAPER = "cho2012"

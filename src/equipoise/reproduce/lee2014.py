@@ -18,10 +18,10 @@ from ..energy.planar import Installation, PlanarArm
 from ..energy.potential import Potential
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism
-from ..synthesis.criteria import Objective, failures, sign_failures
-from ..synthesis.exclusion import Layout
-from ..synthesis.installing import STIFFNESS, A, B, Equations, Fixed, upward
-from ..synthesis.layouts import Search, labels, name, search, span
+from ..synthesis.planar.criteria import Objective, failures, sign_failures
+from ..synthesis.planar.exclusion import Layout
+from ..synthesis.planar.installing import STIFFNESS, A, B, Equations, Fixed, upward
+from ..synthesis.planar.layouts import Search, labels, name, search, span
 from .record import Plot, Reproduction, Row, spread
 
 PAPER = "lee2014"

@@ -22,8 +22,8 @@ from ..kinematics import Tree
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Mechanism
 from ..synthesis import Design, design
-from ..synthesis.moments import Lump, Moment, Segment, moments, segments
-from ..synthesis.parallelograms import mobility
+from ..synthesis.pseudobase.moments import Lump, Moment, Segment, moments, segments
+from ..synthesis.pseudobase.parallelograms import mobility
 from .record import Plot, Reproduction, Row, spread, vector
 
 PAPER = "lin2010"

@@ -16,11 +16,11 @@ from ..balance import check
 from ..energy.potential import Potential
 from ..kinematics import Tree
 from ..mechanism import Body, Joint, Mechanism
-from ..synthesis.delta import design, one_per_leg
-from ..synthesis.delta_legs import DeltaLeg, delta_legs
-from ..synthesis.delta_robot import DeltaRobot
-from ..synthesis.delta_workspace import Goal
-from ..synthesis.rocker import Guide, TwoAxisRocker
+from ..synthesis.delta.legs import DeltaLeg, delta_legs
+from ..synthesis.delta.method import design, one_per_leg
+from ..synthesis.delta.robot import DeltaRobot
+from ..synthesis.delta.rocker import Guide, TwoAxisRocker
+from ..synthesis.delta.workspace import Goal
 from .record import Map, Plot, Reproduction, Row
 
 PAPER = "simionescu2015"

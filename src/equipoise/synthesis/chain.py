@@ -17,8 +17,8 @@ from ..errors import UnsupportedError
 from ..kinematics import Tree
 from ..mechanism import Mechanism
 from ..spring import Vec3
-from .moments import segments
 from .mounts import Mounts
+from .pseudobase.moments import segments
 
 SAME = 1e-9  # of the mechanism's reach: closer points coincide
 

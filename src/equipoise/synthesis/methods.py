@@ -7,16 +7,14 @@ from typing import Any
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
-from . import (
-    bevel,
-    convex,
-    delta,
-    no_auxiliary,
-    planar,
-    pseudobase,
-)
+from . import convex
+from .bevel import method as bevel
+from .delta import method as delta
 from .design import Design
 from .method import Method
+from .no_auxiliary import method as no_auxiliary
+from .planar import method as planar
+from .pseudobase import method as pseudobase
 
 _MODULES = (
     convex,

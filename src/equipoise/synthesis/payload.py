@@ -18,8 +18,8 @@ from ..errors import Fault, InputError, nearest
 from ..io.text import Names
 from ..mechanism import Mechanism, PointMass
 from ..spring import Spring
+from .bevel.shoulder import Shoulder
 from .given import number, vectors
-from .shoulder import Shoulder
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,10 @@ from math import atan2, pi
 
 import numpy as np
 
-from ..arrays import Array
-from ..kinematics import Tree
-from ..mechanism import Mechanism
-from .moments import NOTHING, Segment, moments, segments, slide_faults, upwards
+from ...arrays import Array
+from ...kinematics import Tree
+from ...mechanism import Mechanism
+from ..pseudobase.moments import NOTHING, Segment, moments, segments, slide_faults, upwards
 
 RIGHT = 1e-9  # how nearly axes have to be perpendicular, and (relative to the sizes) intersect
 

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
-from ..mechanism import Mechanism
-from .design import Design
-from .given import Given, number, numbers, spring_sizes, vectors
-from .method import Method, Parameter
+from ...arrays import Array
+from ...errors import Fault, InputError, nearest
+from ...mechanism import Mechanism
+from ..design import Design
+from ..given import Given, number, numbers, spring_sizes, vectors
+from ..method import Method, Parameter
+from ..mounts import Mounts
 from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
-from .mounts import Mounts
 from .parallelograms import Builder, Module, mobility
 
 

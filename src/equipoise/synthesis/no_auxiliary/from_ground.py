@@ -17,9 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..spring import Spring
-from .chain import Chain, ChainLink
+from ...arrays import Array
+from ...spring import Spring
+from ..chain import Chain, ChainLink
 
 
 def fewest_springs(chain: Chain) -> int:

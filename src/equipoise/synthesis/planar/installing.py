@@ -17,9 +17,9 @@ from math import inf, log
 
 import numpy as np
 
-from ..arrays import Array, Booleans, Complexes
-from ..energy.blocks import StiffnessBlocks
-from ..energy.planar import Installation, PlanarArm
+from ...arrays import Array, Booleans, Complexes
+from ...energy.blocks import StiffnessBlocks
+from ...energy.planar import Installation, PlanarArm
 from .exclusion import Layout
 
 STARTS = 40  # tried at most

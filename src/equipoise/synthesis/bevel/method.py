@@ -17,20 +17,20 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InfeasibleError, InputError
-from ..io.text import Names
-from ..kinematics import Tree
-from ..kinematics.sampling import bounds
-from ..mechanism import Body, Coupling, Joint, Mechanism
-from ..spring import Spring, Vec3
-from .design import Design
+from ...arrays import Array
+from ...errors import Fault, InfeasibleError, InputError
+from ...io.text import Names
+from ...kinematics import Tree
+from ...kinematics.sampling import bounds
+from ...mechanism import Body, Coupling, Joint, Mechanism
+from ...spring import Spring, Vec3
+from ..design import Design
+from ..given import Given, number, numbers, spring_sizes
+from ..margin import torque_margin
+from ..method import Method, Parameter
+from ..mounts import Mounts
+from ..payload import Payload
 from .differential import ARRANGEMENTS, SIDES, differential
-from .given import Given, number, numbers, spring_sizes
-from .margin import torque_margin
-from .method import Method, Parameter
-from .mounts import Mounts
-from .payload import Payload
 from .shoulder import Shoulder, find
 
 NODES = 64  # of the quadrature over each joint's range

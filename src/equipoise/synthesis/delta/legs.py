@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..energy.potential import lumped_masses
-from ..kinematics import Tree
-from ..kinematics.groups import Place, places
-from ..kinematics.linkage import Linkage
-from ..kinematics.tree import Link
-from ..mechanism import Mechanism
-from ..rotation import about
+from ...arrays import Array
+from ...energy.potential import lumped_masses
+from ...kinematics import Tree
+from ...kinematics.groups import Place, places
+from ...kinematics.linkage import Linkage
+from ...kinematics.tree import Link
+from ...mechanism import Mechanism
+from ...rotation import about
 
 Y = (0.0, 1.0, 0.0)
 SMALL = 1e-9  # relative: what counts as nothing

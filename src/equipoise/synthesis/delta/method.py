@@ -16,15 +16,15 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError
-from ..mechanism import Body, Joint, Mechanism
-from ..rotation import to_rpy
-from .delta_legs import DeltaLeg, NotDelta, delta_legs
-from .delta_workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
-from .design import Design
-from .method import Method, Parameter
+from ...arrays import Array
+from ...errors import Fault, InputError
+from ...mechanism import Body, Joint, Mechanism
+from ...rotation import to_rpy
+from ..design import Design
+from ..method import Method, Parameter
+from .legs import DeltaLeg, NotDelta, delta_legs
 from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
+from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 
 Variant = Literal["full", "axis", "optimum"]
 VARIANTS: tuple[str, ...] = get_args(Variant)

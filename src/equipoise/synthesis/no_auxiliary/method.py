@@ -12,20 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InfeasibleError, InputError, nearest
-from ..kinematics import Tree
-from ..kinematics.groups import places
-from ..mechanism import Mechanism
-from ..spring import Spring
+from ...arrays import Array
+from ...errors import Fault, InfeasibleError, InputError, nearest
+from ...kinematics import Tree
+from ...kinematics.groups import places
+from ...mechanism import Mechanism
+from ...spring import Spring
+from ..chain import Chain, ChainLink, chain, reasons
+from ..design import Design
+from ..given import Given, number, numbers
+from ..method import Method, Parameter
+from ..mounts import Mounts
+from ..products import Product, fill
 from . import from_ground, two_links
-from .chain import Chain, ChainLink, chain, reasons
-from .design import Design
 from .from_ground import fewest_springs
-from .given import Given, number, numbers
-from .method import Method, Parameter
-from .mounts import Mounts
-from .products import Product, fill
 from .two_links import FREE_3, LAYOUTS, TwoLinks
 
 

@@ -21,11 +21,11 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InfeasibleError
-from ..spring import Spring
-from .chain import Chain, ChainLink
-from .products import Product, fill, show
+from ...arrays import Array
+from ...errors import InfeasibleError
+from ...spring import Spring
+from ..chain import Chain, ChainLink
+from ..products import Product, fill, show
 
 Layout = Literal["a", "b", "c", "d"]
 LAYOUTS: dict[str, tuple[int, int, int]] = {"b": (1, 1, 1), "a": (-1, -1, 1), "c": (1, -1, -1), "d": (-1, 1, -1)}

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..energy.potential import lumped_masses
-from ..kinematics import Tree
-from ..kinematics.groups import places
-from ..mechanism import Joint, Mechanism
+from ...arrays import Array
+from ...energy.potential import lumped_masses
+from ...kinematics import Tree
+from ...kinematics.groups import places
+from ...mechanism import Joint, Mechanism
 
 NOTHING = 1e-12  # relative: what is nothing but rounding
 POSES = 64

@@ -15,18 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from ..energy.planar import PlanarArm, obstacles
-from ..errors import EquipoiseError, Fault, InfeasibleError, InputError
-from ..mechanism import Mechanism
-from ..validate import whole_number
+from ...energy.planar import PlanarArm, obstacles
+from ...errors import EquipoiseError, Fault, InfeasibleError, InputError
+from ...mechanism import Mechanism
+from ...validate import whole_number
+from ..design import Design
+from ..given import Given, number, numbers
+from ..method import Method, Parameter
+from ..problem import Progress
 from .criteria import failures
-from .design import Design
 from .exclusion import Layout, prove
-from .given import Given, number, numbers
 from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
 from .layouts import Excluded, default_layout, labels, name
-from .method import Method, Parameter
-from .problem import Progress
 
 STOCK = 200  # choices from stock that are tried
 NEAREST = 4  # stiffnesses in stock to choose from, for each spring

@@ -20,16 +20,16 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any, get_args
 
-from ..balance import Balance, check
-from ..energy.planar import PlanarArm
-from ..energy.symbols import Angles, SymbolicBlocks, design_equations
-from ..errors import Fault, InputError
-from ..mechanism import Body, Joint, Mechanism
-from ..validate import whole_number
+from ...balance import Balance, check
+from ...energy.planar import PlanarArm
+from ...energy.symbols import Angles, SymbolicBlocks, design_equations
+from ...errors import Fault, InputError
+from ...mechanism import Body, Joint, Mechanism
+from ...validate import whole_number
+from ..problem import Progress
 from .criteria import Failure, Objective, failures, objections
 from .exclusion import Layout, Leaf, Proof, prove
 from .installing import Solution, solve
-from .problem import Progress
 
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 LENGTH, MASS = 0.2, 1.0  # [m, kg] of every link of the example arm, its mass centre halfway

@@ -1,0 +1,1 @@
+"""DELTA robots (Simionescu, Ciupitu and Ionita 2015)."""

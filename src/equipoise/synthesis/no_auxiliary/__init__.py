@@ -1,0 +1,1 @@
+"""Open chains without auxiliary links (Lenzo 2017)."""
