@@ -25,7 +25,7 @@ from equipoise.errors import EquipoiseWarning, InfeasibleError, InputError, Unsu
 from equipoise.io import mjcf
 from equipoise.reproduce.cho2012 import shoulder
 from equipoise.synthesis import METHODS
-from equipoise.synthesis import differential as d
+from equipoise.synthesis.bevel import differential as d
 from equipoise.synthesis.bevel.shoulder import find
 
 THETA = np.random.default_rng(0).uniform(-pi, pi, (200, 2))
