@@ -56,6 +56,23 @@ def test_every_way_leaves_what_it_says_by_the_reference():
         assert way.share > 0.1  # and no spring can do it alone
 
 
+def test_no_more_springs_move_than_need_to():
+    """Moving link 4's two springs alone is exact: a third that would move by nothing is not named."""
+    m = eq.load("examples/mechanisms/lee2014_table5a.yaml")
+    found = adjust(m, Payload.at(m, (0.0, 2.0), "link 4"))
+    assert found.exact
+    assert [move.spring for move in found.best.moves] == ["spring 2 (1-4)", "spring 3 (1-4)"]
+    assert all(move.travel > 0.01 for move in found.best.moves)
+
+
+def test_where_loops_close():
+    m = eq.load("examples/mechanisms/desk_lamp.yaml")
+    found = adjust(m, Payload.at(m, (0.0, 0.5), "head"))
+    assert found.exact
+    assert found.left == pytest.approx(found.bound, rel=1e-6)
+    assert len(found.best.moves) == 2
+
+
 def test_no_fixed_springs_leave_less_than_the_bound():
     m, payload = pendulum()
     found = adjust(m, payload)

@@ -15,16 +15,15 @@ points = arrays(float, (4, 3), elements=st.floats(-2, 2, allow_subnormal=False))
 def test_a_thousand_random_capsules_as_a_collision_library_has_them():
     coal = peer("coal")
     rng = np.random.default_rng(0)
-    ends, radius = rng.uniform(-1, 1, (1000, 4, 3)), rng.uniform(0.01, 0.1, (1000, 2))
+    ends, radius = rng.uniform(-1, 1, (1500, 4, 3)), rng.uniform(0.01, 0.1, (1500, 2))
     own = closest(*ends.transpose(1, 0, 2))[0] - radius.sum(axis=1)
+    apart = np.flatnonzero(own >= 1e-3)[:1000]  # touching: a penetration depth is another question
+    assert len(apart) == 1000
     request, far = coal.DistanceRequest(), []
     request.gjk_tolerance = 1e-12
-    for (a, b, c, d), (r, s), distance in zip(ends, radius, own, strict=True):
-        if distance < 1e-3:
-            continue  # touching: a penetration depth is another question
+    for (a, b, c, d), (r, s), distance in zip(ends[apart], radius[apart], own[apart], strict=True):
         shapes = [_capsule(coal, a, b, r), _capsule(coal, c, d, s)]
         far.append(distance - coal.distance(*shapes[0], *shapes[1], request, coal.DistanceResult()))
-    assert len(far) > 700
     assert np.abs(far).max() < 1e-9
 
 

@@ -67,8 +67,10 @@ def adjustment_lines(found: Adjustment) -> Iterator[RenderableType]:
     for title in ("joint", "fixed", "least", "unit"):
         table.add_column(title, justify="left" if title == "joint" else "right", no_wrap=True)
     balance = found.ends[0]
+    floor = 1e-10 * float(found.ends[1].unbalanced.max.max(initial=0))
     for name, unit, left, least in zip(balance.coordinates, balance.units, found.left, found.bound, strict=True):
-        table.add_row(Text(name), number(float(left)), number(float(least)), "N m" if unit == "rad" else "N")
+        cells = (number(float(value) if value > floor else 0.0) for value in (left, least))
+        table.add_row(Text(name), *cells, "N m" if unit == "rad" else "N")
     yield table
 
 

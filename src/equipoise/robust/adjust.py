@@ -206,7 +206,8 @@ class _Problem:
 
     def _columns(self, mechanism: Mechanism, handles: Sequence[Handle]) -> list[Array]:
         """Of each handle (n N, 3) or (n N, 1): change of the torque per metre."""
-        torque_map = TorqueMap(mechanism, self.q, EVERY_ATTACHMENT)
+        used = sorted({handle.spring for handle in handles})
+        torque_map = TorqueMap(mechanism.with_springs(mechanism.springs[i] for i in used), self.q, EVERY_ATTACHMENT)
         J = torque_map.jacobian()
         found = []
         for handle in handles:

@@ -106,7 +106,7 @@ class Drawing:
 
     def __init__(self, mechanism: Mechanism, scatter: Scatter) -> None:
         if mechanism.loops and scatter.length:
-            raise UnsupportedError("length scatter is not covered where loops close; set it to 0")
+            raise UnsupportedError("lengths cannot scatter where loops close: set them to 0 (--length 0)")
         self.scatter = scatter
         self.parameters: list[Parameter] = []
         index = Tree.of(mechanism).index

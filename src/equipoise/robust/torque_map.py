@@ -77,7 +77,8 @@ class TorqueMap:
             blocks.append(rate)
         U, S, Vt = np.linalg.svd(np.concatenate(blocks, axis=1), full_matrices=False)
         rank = int((RANK * S[0] < S).sum()) if len(S) else 0
-        self._A = (U[:, :rank] * S[:rank]).astype(np.float32)
+        self._A = U[:, :rank] * S[:rank]
+        self._A_single = self._A.astype(np.float32)
         self._W = np.split(Vt[:rank].T, np.cumsum([b.shape[1] for b in blocks])[:-1])
         self._start = self._features(np.zeros((1, len(self.parameters))))
 
@@ -85,9 +86,9 @@ class TorqueMap:
         """(n N, builds) torque of builds whose parameters are off by `x` (builds, parameters) [SI]."""
         features = (self._features(x) - self._start).T
         if np.iscomplexobj(x):
-            return self._softened(x, self.nominal[:, None] + self._A.astype(float) @ features)
+            return self._softened(x, self.nominal[:, None] + self._A @ features)
         # the difference from the drawing in single precision: 1e-7 of the scatter, at twice the speed
-        torque = self._A @ features.astype(np.float32)
+        torque = self._A_single @ features.astype(np.float32)
         torque += self.nominal[:, None].astype(np.float32)
         return self._softened(x, torque)
 

@@ -80,9 +80,8 @@ class Payload:
 
     def residual(self, mechanism: Mechanism, springs: Sequence[Spring]) -> dict[str, float]:
         """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
-        ends = [check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high)]
-        most = np.maximum(*(end.residual.max for end in ends))
-        return dict(zip(ends[0].coordinates, most.tolist(), strict=True))
+        low, high = (check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high))
+        return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
 
 def _range(masses: Sequence[float]) -> tuple[float, float]:
