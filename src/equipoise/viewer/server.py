@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import warnings
 from ipaddress import ip_address
 from pathlib import Path
@@ -41,11 +42,14 @@ class Viewer:
             source: the file that the mechanism is from: the meshes that a URDF names are drawn.
 
         Raises:
-            InputError: viser is not installed, `output` cannot be written, or the mechanism's loops cannot be closed.
+            InputError: viser is not installed, `output` cannot be written, `host` is not this machine's, or the
+                mechanism's loops cannot be closed.
         """
         viser = load_viser()
         check_savable(output)
-        if not loopback(host):
+        local = loopback(host)
+        own_address(host)
+        if not local:
             warnings.warn(
                 f"the viewer listens on {host}: whoever reaches this address can change the design and save it",
                 EquipoiseWarning,
@@ -83,6 +87,21 @@ def loopback(host: str) -> bool:
         return ip_address(host).is_loopback
     except ValueError:
         raise InputError(Fault(("--host",), f"expected an IP address, found '{host}'", (HOST, LOCAL))) from None
+
+
+def own_address(host: str) -> None:
+    """Ask for a port there: the server itself would wait for ever where it cannot have one.
+
+    Raises:
+        InputError: it is no address of this machine.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as found:
+        try:
+            found.bind((HOST if host == LOCAL else host, 0))
+        except OSError:
+            message = f"{host} is not an address of this machine"
+            raise InputError(Fault(("--host",), message, (HOST, LOCAL))) from None
 
 
 def load_viser() -> Any:
