@@ -47,7 +47,7 @@ def disagreement(mechanism: Mechanism, q: np.ndarray, tier: str | None) -> float
         float(np.abs(found - known).max(initial=0)) / scale
         for found, known, scale in (
             (parts.gravity, state.gravity, load),
-            (parts.length, state.length, reach),
+            (parts.path, state.path, reach),
             (parts.gravity_torque, state.gravity_torque, load * ratio),
             (parts.spring_torque, state.spring_torque, (pull + load) * ratio),
             (total.energy, state.energy, pull + load),

@@ -13,8 +13,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
+from .elements import Spring
 from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from .spring import Spring
 
 if TYPE_CHECKING:
     from .balance import Balance, check

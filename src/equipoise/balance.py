@@ -15,10 +15,10 @@ import numpy as np
 from .arrays import Array
 from .energy.closed import ClosedEnergy
 from .energy.fourier import EXACT, FourierEnergy
-from .energy.frames import MAX_TERMS, NoFourierForm
+from .energy.frames import MAX_TERMS
 from .energy.peak import climb
 from .energy.potential import Potential, State
-from .errors import InputError
+from .errors import InputError, NoFourierForm
 from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
 from .notebook import Shown
@@ -56,11 +56,25 @@ class Loads:
 
 @dataclass(frozen=True)
 class SpringUse:
-    """The largest and least length [m] and the largest force magnitude [N] of a spring over the poses."""
+    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m]."""
 
-    max_length: float
-    min_length: float
-    max_force: float
+    path: Range
+    force: Range
+
+    @property
+    def min_length(self) -> float:
+        """The shortest it gets [m]."""
+        return self.path[0]
+
+    @property
+    def max_length(self) -> float:
+        """The longest it gets [m]."""
+        return self.path[1]
+
+    @property
+    def max_force(self) -> float:
+        """The largest force magnitude [N]."""
+        return max(map(abs, self.force))
 
 
 @dataclass(frozen=True)
@@ -150,18 +164,7 @@ class Balance(Shown):
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
-                {
-                    "name": spring.name,
-                    "body_a": spring.body_a,
-                    "p_a": list(spring.p_a),
-                    "body_b": spring.body_b,
-                    "p_b": list(spring.p_b),
-                    "stiffness": spring.stiffness,
-                    "free_length": spring.free_length,
-                    "max_length": use.max_length,
-                    "min_length": use.min_length,
-                    "max_force": use.max_force,
-                }
+                spring.to_dict(use.path, use.force)
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
             ],
         }
@@ -191,7 +194,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     # every reported extreme climbs on its own: torques, energies both ways, lengths both ways
     def quantities(s: State) -> Array:
         sums = np.stack([s.gravity, s.springs.sum(axis=1), s.energy], axis=1)
-        return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.length, -s.length])
+        return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.path, -s.path])
 
     best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
     n, m = tree.n, len(mechanism.springs)
@@ -218,11 +221,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
         use=tuple(
-            SpringUse(
-                float(up),
-                -float(minus),
-                spring.stiffness * max(up - spring.free_length, spring.free_length + minus, 0.0),
-            )
+            SpringUse((-float(minus), float(up)), spring.law.extremes(-float(minus), float(up)))
             for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
         ),
     )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 Path = tuple[str | int, ...]  # where in a file: ("joints", 2, "parent")
 
@@ -67,6 +68,10 @@ class UnsupportedError(EquipoiseError):
     """The input is valid, but this operation does not cover it."""
 
 
+class NoFourierForm(UnsupportedError):
+    """The energy has no finite Fourier form, or one that is too long; the message says which."""
+
+
 class InfeasibleError(EquipoiseError):
     """What was asked for does not exist; the message says why."""
 
@@ -77,3 +82,33 @@ def nearest(found: object, choices: Iterable[str]) -> str:
     """`'sholder'; did you mean 'shoulder'?` when one of the choices is close, else just the quoted text."""
     close = difflib.get_close_matches(str(found), list(choices), n=1)
     return f"'{found}'; did you mean '{close[0]}'?" if close else f"'{found}'"
+
+
+def shorten(names: Sequence[str], most: int = 12) -> tuple[str, ...]:
+    """The first names and how many more there are."""
+    return tuple(names) if len(names) <= most else (*names[:most], f"... {len(names) - most} more")
+
+
+def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
+    """A fault where a number, or one of several, is infinite or no number."""
+    values = (values,) if isinstance(values, (int, float)) else values
+    if not all(isfinite(value) for value in values):
+        yield Fault(path, "must be finite")
+
+
+def at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
+    """A fault where a number is below `low`, infinite or no number."""
+    if not (isfinite(value) and value >= low):
+        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}")
+
+
+def positive(path: Path, value: float, unit: str) -> Iterator[Fault]:
+    """A fault where a number is not above zero, infinite or no number."""
+    if not (isfinite(value) and value > 0):
+        yield Fault(path, f"must be more than 0 {unit}, found {value:g}")
+
+
+def known(path: Path, name: str | None, what: str, choices: Sequence[str]) -> Iterator[Fault]:
+    """A fault where a name is none of the choices; `what` says of what, "body"."""
+    if name is not None and name not in choices:
+        yield Fault(path, f"there is no {what} {nearest(name, choices)}", shorten(choices))

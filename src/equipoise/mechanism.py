@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
+from .elements import Element, Vec3
 from .errors import InputError
-from .spring import Spring, Vec3
 
 WORLD = "world"
 JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
@@ -128,7 +128,7 @@ class Mechanism:
     joints: tuple[Joint, ...] = ()
     couplings: tuple[Coupling, ...] = ()
     loops: tuple[Loop, ...] = ()
-    springs: tuple[Spring, ...] = ()
+    springs: tuple[Element, ...] = ()
     masses: tuple[PointMass, ...] = ()
     gravity: Vec3 = (0.0, 0.0, -9.81)
     workspace: Workspace = Workspace()
@@ -170,7 +170,7 @@ class Mechanism:
         prismatic = {joint.name for joint in self.joints if joint.type == "prismatic"}
         return tuple("m" if name in prismatic else "rad" for name in self.coordinates)
 
-    def with_springs(self, springs: Iterable[Spring]) -> Mechanism:
+    def with_springs(self, springs: Iterable[Element]) -> Mechanism:
         """A copy with these springs instead of its own."""
         return replace(self, springs=tuple(springs))
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from math import isfinite
 from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
 
-from .errors import Fault, InputError, Path, nearest
+from .errors import Fault, InputError, Path, at_least, finite, known, nearest, shorten
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -44,33 +45,18 @@ def whole_number(name: str, value: object, least: int, most: int | None = None) 
 
 
 def _numbers(m: Mechanism) -> Iterator[Fault]:
-    def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
-        values = (values,) if isinstance(values, (int, float)) else values
-        if not all(isfinite(value) for value in values):
-            yield Fault(path, "must be finite")
-
     yield from finite(("gravity",), m.gravity)
     for i, body in enumerate(m.bodies):
         yield from finite(("bodies", i, "com"), body.com)
-        yield from _at_least(("bodies", i, "mass"), body.mass, 0, "kg")
+        yield from at_least(("bodies", i, "mass"), body.mass, 0, "kg")
         yield from finite(("bodies", i, "inertia"), body.inertia or ())
     for i, mass in enumerate(m.masses):
         yield from finite(("masses", i, "position"), mass.position)
-        yield from _at_least(("masses", i, "mass"), mass.mass, 0, "kg")
+        yield from at_least(("masses", i, "mass"), mass.mass, 0, "kg")
     for i, capsule in enumerate(m.capsules):
         for end in ("p_a", "p_b"):
             yield from finite(("capsules", i, end), getattr(capsule, end))
-        yield from _at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
-    for i, spring in enumerate(m.springs):
-        for end in ("p_a", "p_b"):
-            yield from finite(("springs", i, end), getattr(spring, end))
-        if not (isfinite(spring.stiffness) and spring.stiffness > 0):
-            yield Fault(("springs", i, "stiffness"), f"must be more than 0 N/m, found {spring.stiffness:g}")
-        yield from _at_least(("springs", i, "free_length"), spring.free_length, 0, "m")
-        yield from _at_least(("springs", i, "mass"), spring.mass, 0, "kg")
-        yield from _at_least(("springs", i, "diameter"), spring.diameter, 0, "m")
-        if not 0 <= spring.mass_split <= 1:
-            yield Fault(("springs", i, "mass_split"), f"must be between 0 and 1, found {spring.mass_split:g}")
+        yield from at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
     for i, joint in enumerate(m.joints):
         for name in ("xyz", "rpy", "axis"):
             yield from finite(("joints", i, name), getattr(joint, name))
@@ -80,11 +66,6 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
             yield from finite(("couplings", i, "terms", name), ratio)
     if not 1 <= m.workspace.samples <= MAX_SAMPLES:
         yield Fault(("workspace", "samples"), f"must be between 1 and {MAX_SAMPLES:,}, found {m.workspace.samples}")
-
-
-def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
-    if not (isfinite(value) and value >= low):
-        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}")
 
 
 def _names(m: Mechanism) -> Iterator[Fault]:
@@ -118,21 +99,16 @@ def _printable(name: str) -> bool:
 def _references(m: Mechanism) -> Iterator[Fault]:
     bodies = tuple(dict.fromkeys(("world", *(body.name for body in m.bodies))))
 
-    def body(path: Path, name: str | None) -> Iterator[Fault]:
-        if name is not None and name not in bodies:
-            yield Fault(path, f"there is no body {nearest(name, bodies)}", _shorten(bodies))
-
     for i, joint in enumerate(m.joints):
         for key in ("parent", "child", "follows"):
-            yield from body(("joints", i, key), getattr(joint, key))
-    for kind, items in (("springs", m.springs), ("loops", m.loops)):
-        for i, item in enumerate(items):
-            for key in ("body_a", "body_b"):
-                yield from body((kind, i, key), getattr(item, key))
+            yield from known(("joints", i, key), getattr(joint, key), "body", bodies)
+    for i, loop in enumerate(m.loops):
+        for key in ("body_a", "body_b"):
+            yield from known(("loops", i, key), getattr(loop, key), "body", bodies)
     for i, mass in enumerate(m.masses):
-        yield from body(("masses", i, "body"), mass.body)
+        yield from known(("masses", i, "body"), mass.body, "body", bodies)
     for i, capsule in enumerate(m.capsules):
-        yield from body(("capsules", i, "body"), capsule.body)
+        yield from known(("capsules", i, "body"), capsule.body, "body", bodies)
 
 
 def _joints(m: Mechanism) -> Iterator[Fault]:
@@ -154,7 +130,7 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
         unit = "N" if joint.type == "prismatic" else "N m"
         for key, value, per in (("damping", joint.damping, " s/m" if unit == "N" else " s/rad"),
                                 ("friction", joint.friction, "")):  # fmt: skip
-            yield from _at_least(("joints", i, key), value, 0, unit + per)
+            yield from at_least(("joints", i, key), value, 0, unit + per)
             if value and joint.type in ("fixed", "parallelogram"):
                 yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
         if joint.type == "parallelogram" and joint.follows is None:
@@ -206,7 +182,7 @@ def _couplings(m: Mechanism) -> Iterator[Fault]:
         for path, name in [(("joint",), coupling.joint), *((("terms", name), name) for name, _ in coupling.terms)]:
             if name not in single:
                 yield Fault(
-                    ("couplings", i, *path), f"no revolute or prismatic joint {nearest(name, single)}", _shorten(single)
+                    ("couplings", i, *path), f"no revolute or prismatic joint {nearest(name, single)}", shorten(single)
                 )
         if coupling.joint in dependent:
             yield Fault(("couplings", i, "joint"), f"joint '{coupling.joint}' is already coupled")
@@ -225,8 +201,8 @@ def _couplings(m: Mechanism) -> Iterator[Fault]:
 
 def _springs(m: Mechanism) -> Iterator[Fault]:
     for i, spring in enumerate(m.springs):
-        if spring.body_a == spring.body_b:
-            yield Fault(("springs", i, "body_b"), f"both ends are on '{spring.body_a}': such a spring does nothing")
+        for fault in spring.faults(m):
+            yield replace(fault, path=("springs", i, *fault.path))
 
 
 def _loops(m: Mechanism) -> Iterator[Fault]:
@@ -254,7 +230,7 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
         for i, name in enumerate(names):
             path: Path = (key, name if key == "assembly" else i)
             if name not in m.coordinates:
-                yield Fault(path, f"there is no coordinate {nearest(name, m.coordinates)}", _shorten(m.coordinates))
+                yield Fault(path, f"there is no coordinate {nearest(name, m.coordinates)}", shorten(m.coordinates))
             elif name in names[:i]:
                 yield Fault(path, f"coordinate '{name}' is named twice")
     for name, value in m.assembly:
@@ -263,8 +239,4 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
 
 
 def _list(names: Iterable[str]) -> str:
-    return ", ".join(_shorten(list(names)))
-
-
-def _shorten(names: Sequence[str], most: int = 12) -> tuple[str, ...]:
-    return tuple(names) if len(names) <= most else (*names[:most], f"... {len(names) - most} more")
+    return ", ".join(shorten(list(names)))

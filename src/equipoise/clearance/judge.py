@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..energy.peak import climb
-from ..energy.potential import Potential
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
@@ -82,15 +82,11 @@ def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
     tree, found = Tree.of(mechanism), []
     poses = tree.poses(q)
     velocities = tree.velocities(q, poses)
-    length = Potential(mechanism)(q).length
-    for i, spring in enumerate(mechanism.springs):
-        A, B = tree.index[spring.body_a], tree.index[spring.body_b]
-        p_a, p_b = np.array(spring.p_a), np.array(spring.p_b)
-        d = poses.point(B, p_b) - poses.point(A, p_a)
-        rate = np.einsum("ni,nij->nj", d, velocities.point(poses, B, p_b) - velocities.point(poses, A, p_a))
-        arm = rate / np.maximum(length[:, i], 1e-12)[:, None]
+    for spring in lines(mechanism, "clearance"):
+        arm = spring.lever_arms(tree, poses, velocities)
         floor = TURNED * np.abs(arm).max(initial=0)
         rarer = np.minimum((arm > floor).mean(axis=0), (arm < -floor).mean(axis=0))
         over = {name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0}
-        found.append(Line(spring.name, float((length[:, i] < spring.free_length).mean()), over))
+        slack = float((spring.path(tree, poses) < spring.free_length).mean())
+        found.append(Line(spring.name, slack, over))
     return found

@@ -19,8 +19,7 @@ from ..arrays import Array, Booleans, Complexes, Integers
 from ..kinematics.sampling import bounds
 from ..kinematics.tree import Tree
 from ..mechanism import Mechanism
-from ..spring import Spring
-from .frames import MAX_TERMS, Frames, NoFourierForm
+from .frames import MAX_TERMS, Frames
 from .potential import lumped_masses
 from .series import Series
 
@@ -48,7 +47,7 @@ class FourierEnergy:
         frames = Frames(tree, max_terms)
         self.tree = tree
         weights = [frames.linear(-np.array(mechanism.gravity), frames.moment([mass])) for mass in _masses(tree)]
-        springs = [spring_series(frames, spring) for spring in mechanism.springs]
+        springs = [spring.series(frames) for spring in mechanism.springs]
         total = Series.sum([Series.constant(np.zeros((1, 1)), tree.n), *weights, *springs])
         n = tree.n
         self.frequency = total.keys[:, :n] / frames.denominators
@@ -134,20 +133,6 @@ def gravity_series(frames: Frames) -> Series:
     """Gravity's energy [J] of all masses, spring masses included; coefficients (T, 1, 1)."""
     g = np.array(frames.tree.mechanism.gravity)
     return frames.linear(g, frames.moment(_masses(frames.tree))).scaled(-1)
-
-
-def spring_series(frames: Frames, spring: Spring) -> Series:
-    """The energy [J] of a zero-free-length spring; coefficients (T, 1, 1).
-
-    Raises:
-        NoFourierForm: it has a free length.
-    """
-    if spring.free_length > 0:
-        raise NoFourierForm(f"spring '{spring.name}' has a free length")
-    index, n = frames.tree.index, frames.tree.n
-    z = Series.constant(np.array([*spring.p_a, 1.0, *spring.p_b])[:, None], n)
-    V = frames.stretch(index[spring.body_a], index[spring.body_b])
-    return frames.quadratic({X: v @ z for X, v in V.items()}).scaled(spring.stiffness / 2)
 
 
 def _masses(tree: Tree) -> list[tuple[int, float, Array]]:

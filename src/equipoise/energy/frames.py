@@ -14,6 +14,7 @@ from math import lcm
 import numpy as np
 
 from ..arrays import Array
+from ..errors import NoFourierForm
 from ..kinematics.linkage import Linkage
 from ..kinematics.tree import Link, Tree
 from ..rotation import harmonics
@@ -22,10 +23,6 @@ from .series import Series
 MAX_TERMS = 200_000
 MAX_FREQUENCY = 2**31 - 1  # a sum of frequencies has to fit the keys of a `Series`
 MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
-
-
-class NoFourierForm(Exception):
-    """The energy has no finite Fourier form, or one that is too long; the message says which."""
 
 
 class Frames:
@@ -50,23 +47,23 @@ class Frames:
         unit = np.eye(7)[None, 3]
         parts: dict[int, list[Series]] = {}
         for sign, body, point in ((-1, body_a, to_a), (1, body_b, to_b)):
-            parts.setdefault(body, []).append(self._constant(sign * point))
+            parts.setdefault(body, []).append(self.constant(sign * point))
             for X, step in self._origin(body):
-                parts.setdefault(X, []).append((step @ self._constant(unit)).scaled(sign))
+                parts.setdefault(X, []).append((step @ self.constant(unit)).scaled(sign))
         return _nonzero(parts)
 
     def moment(self, masses: list[tuple[int, float, Array]]) -> dict[int, Series]:
         """``sum m p`` of the masses (body, m [kg], p [m]) as ``{X: v_X}`` with ``sum_X R_WX v_X``, v 3 x 1 [kg m]."""
         parts: dict[int, list[Series]] = {}
         for body, mass, p in masses:
-            parts.setdefault(body, []).append(self._constant(mass * p[:, None]))
+            parts.setdefault(body, []).append(self.constant(mass * p[:, None]))
             for X, step in self._origin(body):
                 parts.setdefault(X, []).append(step.scaled(mass))
         return _nonzero(parts)
 
     def linear(self, row: Array, V: dict[int, Series]) -> Series:
         """``row . sum_X R_WX V_X`` with a world vector `row` (3,); coefficients (T, 1, m)."""
-        left = self._constant(np.asarray(row)[None])
+        left = self.constant(np.asarray(row)[None])
         return self._sum([left @ self.relative(0, X) @ v for X, v in V.items()], V)
 
     def quadratic(self, V: dict[int, Series]) -> Series:
@@ -82,7 +79,7 @@ class Frames:
 
     def _sum(self, parts: list[Series], V: dict[int, Series]) -> Series:
         if not parts:
-            return self._constant(np.zeros((1, 1)))
+            return self.constant(np.zeros((1, 1)))
         if sum(len(part) for part in parts) > 8 * self.max_terms:
             raise NoFourierForm(f"its Fourier form has more than {self.max_terms:,} terms")
         total = Series.sum(parts)
@@ -93,14 +90,15 @@ class Frames:
         if terms > self.max_terms:
             raise NoFourierForm(f"its Fourier form has more than {self.max_terms:,} terms")
 
-    def _constant(self, value: Array) -> Series:
+    def constant(self, value: Array) -> Series:
+        """A series of one constant term."""
         return Series.constant(value, self.tree.n)
 
     def _origin(self, body: int) -> Iterator[tuple[int, Series]]:
         """The steps (X, step in X's frame, 3 x 1) whose sum over X is the body's origin."""
         while body:
             link = self.tree.link_of[body]
-            step = self._constant(link.p0[:, None])
+            step = self.constant(link.p0[:, None])
             if link.slide:
                 step = Series.sum([step, self._slide(link)])
             yield link.parent, step
@@ -118,7 +116,7 @@ class Frames:
 
     def _turn(self, link: Link) -> Series:
         """The body's orientation in its base: ``R0`` times three terms for each rotation."""
-        turn = self._constant(link.R0)
+        turn = self.constant(link.R0)
         for motion in link.motions:
             if not motion.rotates:
                 continue
@@ -133,7 +131,7 @@ class Frames:
     def _chain(self, top: int, body: int) -> Series:
         """R_top,body, with `top` above `body` along the bases."""
         if top == body:
-            return self._constant(np.eye(3))
+            return self.constant(np.eye(3))
         if (top, body) not in self._chains:
             link = self.tree.link_of[body]
             above, turn = self._chain(top, link.base), self._turn(link)

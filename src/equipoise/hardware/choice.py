@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance
+from ..elements import lines
 from ..energy.peak import climb
 from ..errors import Fault, InfeasibleError, InputError, nearest
 from ..mechanism import Mechanism
@@ -78,7 +79,7 @@ class Choice:
             "seconds": self.seconds,
             "springs": [
                 {"name": spring.name, "p_a": list(spring.p_a), "p_b": list(spring.p_b), "stock": asdict(stock)}
-                for spring, stock in zip(self.mechanism.springs, self.stock, strict=True)
+                for spring, stock in zip(lines(self.mechanism, "stock"), self.stock, strict=True)
             ],
         }
 

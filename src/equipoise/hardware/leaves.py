@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import largest_share
+from ..elements import lines
 from ..energy.peak import climb
 from ..energy.potential import lumped_masses
 from ..kinematics import Tree, sample
@@ -44,7 +45,7 @@ class Torques:
         self._masses = [(self.tree.index[body], m, p) for body, m, p in lumped_masses(mechanism) if m]
         self._springs = [
             (s.stiffness, self.tree.index[s.body_a], np.array(s.p_a), self.tree.index[s.body_b], np.array(s.p_b), law)
-            for s, law in zip(mechanism.springs, laws, strict=True)
+            for s, law in zip(lines(mechanism, "hardware"), laws, strict=True)
         ]
 
     def __call__(self, q: Array) -> tuple[Array, Array]:

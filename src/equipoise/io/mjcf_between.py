@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..elements import Spring, Vec3
 from ..mechanism import Coupling, Loop
-from ..spring import Spring, Vec3
 from .text import Names
 
 Places = dict[int, tuple[str, Array]]

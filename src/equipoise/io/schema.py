@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
+from ..elements import KINDS, Element, Spring
 from ..errors import Fault, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
@@ -42,10 +43,10 @@ def _schema(value: object) -> int:
 
 
 class Item(BaseModel):
-    """A mapping of the file. `kind` is what a message calls it."""
+    """A mapping of the file. `noun` is what a message calls it."""
 
     model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
-    kind: ClassVar[str]
+    noun: ClassVar[str]
 
     def values(self) -> dict[str, Any]:
         """The fields by name, as the dataclass of the same kind takes them."""
@@ -53,7 +54,7 @@ class Item(BaseModel):
 
 
 class BodyItem(Item):
-    kind = "a body"
+    noun = "a body"
     name: Text
     mass: Mass = 0.0
     com: Point = (0.0, 0.0, 0.0)
@@ -61,7 +62,7 @@ class BodyItem(Item):
 
 
 class JointItem(Item):
-    kind = "a joint"
+    noun = "a joint"
     name: Text
     type: Type
     parent: Text
@@ -87,14 +88,14 @@ class JointItem(Item):
 
 
 class CouplingItem(Item):
-    kind = "a coupling"
+    noun = "a coupling"
     joint: Text
     terms: dict[str, Number]
     offset: Any = 0.0  # an angle or a length: its joint tells
 
 
 class LoopItem(Item):
-    kind = "a loop"
+    noun = "a loop"
     body_a: Text
     p_a: Point
     body_b: Text
@@ -103,9 +104,31 @@ class LoopItem(Item):
     axis_b: Direction | None = None
 
 
+def _of_kind(value: object) -> object:
+    """An entry of `springs` as the model of its kind; what is wrong inside keeps its own place."""
+    return _spring_model(value).model_validate(value) if isinstance(value, dict) else SpringItem.model_validate(value)
+
+
+def _spring_model(value: object) -> type[Item]:
+    kind = value.get("kind", Spring.kind) if isinstance(value, dict) else Spring.kind
+    return SPRINGS.get(kind, OtherSpring) if isinstance(kind, str) else OtherSpring
+
+
+Kind = Annotated[str, one_of("kind of spring", tuple(KINDS))]
+
+
+class OtherSpring(Item):
+    """Of a kind that does not exist: that is the fault."""
+
+    model_config = ConfigDict(extra="ignore")
+    noun = "a spring"
+    kind: Kind
+
+
 class SpringItem(Item):
-    kind = "a spring"
+    noun = "a spring"
     name: Text
+    kind: Kind = Spring.kind
     body_a: Text
     p_a: Point
     body_b: Text
@@ -116,9 +139,15 @@ class SpringItem(Item):
     mass_split: Number = 0.5
     diameter: Length = 0.0
 
+    def element(self) -> Element:
+        return Spring(**{key: value for key, value in self.values().items() if key != "kind"})
+
+
+SPRINGS: dict[str, type[Item]] = {Spring.kind: SpringItem}
+
 
 class MassItem(Item):
-    kind = "a mass"
+    noun = "a mass"
     name: Text
     body: Text
     mass: Mass
@@ -126,7 +155,7 @@ class MassItem(Item):
 
 
 class CapsuleItem(Item):
-    kind = "a capsule"
+    noun = "a capsule"
     name: Text
     body: Text
     p_a: Point
@@ -135,12 +164,12 @@ class CapsuleItem(Item):
 
 
 class WorkspaceItem(Item):
-    kind = "a workspace"
+    noun = "a workspace"
     samples: Annotated[int, BeforeValidator(whole)] = 4096
 
 
 class DhRow(Item):
-    kind = "a dh row"
+    noun = "a dh row"
     name: Text | None = None
     type: Annotated[Literal["revolute", "prismatic"], one_of("joint type for a dh row", SINGLE)] = "revolute"
     a: Length
@@ -153,13 +182,13 @@ class DhRow(Item):
 
 
 class DhTable(Item):
-    kind = "a dh table"
+    noun = "a dh table"
     convention: Annotated[Literal["standard", "modified"], one_of("convention", ("standard", "modified"))]
     rows: list[DhRow]
 
 
 class MechanismFile(Item):
-    kind = "a mechanism file"
+    noun = "a mechanism file"
     schema_: Annotated[int, BeforeValidator(_schema), Field(alias="schema")]
     name: Text
     gravity: Gravity = (0.0, 0.0, -9.81)
@@ -171,7 +200,7 @@ class MechanismFile(Item):
     loops: list[LoopItem] = []
     independent: list[Text] = []
     assembly: dict[str, Any] = {}  # angles or lengths: their joints tell
-    springs: list[SpringItem] = []
+    springs: list[Annotated[Any, BeforeValidator(_of_kind)]] = []
     masses: list[MassItem] = []
     capsules: list[CapsuleItem] = []
     workspace: WorkspaceItem = WorkspaceItem()
@@ -200,32 +229,32 @@ def validate(data: object) -> tuple[MechanismFile | None, list[tuple[Fault, bool
     try:
         return MechanismFile.model_validate(data), []
     except ValidationError as error:
-        return None, list(_faults(error))
+        return None, list(_faults(error, data))
 
 
-def _faults(error: ValidationError) -> Iterator[tuple[Fault, bool]]:
+def _faults(error: ValidationError, data: object) -> Iterator[tuple[Fault, bool]]:
     details = error.errors(include_url=False)
     missing = {detail["loc"] for detail in details if detail["type"] == "missing"}
     meant: set[Path] = set()  # missing only because its key is misspelt: one fault, not two
     for detail in details:
         if detail["type"] == "extra_forbidden":
             above, key = detail["loc"][:-1], detail["loc"][-1]
-            keys = _keys(_model(above))
+            keys = _keys(_model(above, data))
             message = f"unknown key {nearest(key, keys)}"
             meant |= {(*above, name) for name in keys if message.endswith(f"mean '{name}'?")} & missing
             yield Fault(detail["loc"], message, keys), True
     for detail in details:
         if detail["type"] != "extra_forbidden" and detail["loc"] not in meant:
-            yield _plain(detail), False
+            yield _plain(detail, data), False
 
 
-def _plain(detail: Any) -> Fault:
+def _plain(detail: Any, data: Any) -> Fault:
     """One pydantic error in plain words."""
     path, kind, context = detail["loc"], detail["type"], detail.get("ctx", {})
     if path == ("schema",) and kind == "missing":
         return Fault(path, f"missing: the file starts with 'schema: {SCHEMA}'")
     if kind == "missing":
-        return Fault(path, f"missing: {_model(path[:-1]).kind} needs it")
+        return Fault(path, f"missing: {_model(path[:-1], data).noun} needs it")
     if kind == "value_error":
         return Fault(path, str(context["error"]))
     if kind == "choice":
@@ -236,13 +265,15 @@ def _plain(detail: Any) -> Fault:
         return Fault(path, f"expected a list, found {show(detail['input'])}")
     if kind == "dict_type":
         return Fault(path, f"expected a mapping, found {show(detail['input'])}")
-    model = _model(path)
+    model = _model(path, data)
     return Fault(path, f"expected a mapping, found {show(detail['input'])}", _keys(model))
 
 
-def _model(path: Path) -> type[Item]:
+def _model(path: Path, data: Any) -> type[Item]:
     if not path:
         return MechanismFile
+    if path[0] == "springs" and len(path) > 1:
+        return _spring_model(data["springs"][path[1]])
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

@@ -10,7 +10,6 @@ from pathlib import Path as FilePath
 
 from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from ..spring import Spring
 from ..units import to_si
 from . import MODEL_SUFFIXES, dh, load
 from .emit import to_text
@@ -70,7 +69,7 @@ def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
             joints=tuple(joint for joint, _ in tree.joints),
             couplings=tuple(coupling for coupling, _ in tree.couplings),
             loops=tuple(Loop(**item.values()) for item in file.loops),
-            springs=tuple(Spring(**item.values()) for item in file.springs),
+            springs=tuple(item.element() for item in file.springs),
             masses=tuple(PointMass(**item.values()) for item in file.masses),
             capsules=tuple(Capsule(**item.values()) for item in file.capsules),
             gravity=file.gravity,

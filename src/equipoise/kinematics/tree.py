@@ -50,10 +50,14 @@ class Link:
 
 @dataclass(frozen=True)
 class Poses:
-    """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it."""
+    """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it.
+
+    And the elementary joint values `s` (N, motions) [rad or m] that they come from.
+    """
 
     R: Array
     p: Array
+    s: Array
 
     def point(self, body: int, p: Array) -> Array:
         """World position (N, 3) of the point `p` (3,) fixed in `body`."""
@@ -62,10 +66,14 @@ class Poses:
 
 @dataclass(frozen=True)
 class Velocities:
-    """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate."""
+    """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate.
+
+    And the rates `s` (N, motions, n) of the elementary joint values.
+    """
 
     w: Array
     v: Array
+    s: Array
 
     def point(self, poses: Poses, body: int, p: Array) -> Array:
         """Velocity (N, 3, n) of the point `p` (3,) fixed in `body`."""
@@ -78,7 +86,7 @@ class Tree:
 
     Attributes:
         names: body names, the world first; `index` maps a name to its number.
-        motions: names of the elementary motions.
+        motions: names of the elementary motions; `rows` maps a name to its row.
         coordinates: names of the coordinates q.
         links: one per body but the world, parents before children.
         C: (motions, n) elementary joint values are ``s = C q + s0``.
@@ -95,7 +103,7 @@ class Tree:
         self.coordinates = mechanism.coordinates
         self.n = len(self.coordinates)
         self.motions = tuple(_motion_names(mechanism))
-        rows = {name: row for row, name in enumerate(self.motions)}
+        self.rows = rows = {name: row for row, name in enumerate(self.motions)}
         self.links = tuple(self._links(rows))
         self.C, self.s0 = _couplings(mechanism, rows)
         ranges = {j.name: j.range for j in mechanism.joints if j.range is not None}
@@ -140,8 +148,7 @@ class Tree:
     @cached_property
     def coordinate_rows(self) -> Integers:
         """(n,) the motion row that is coordinate j itself."""
-        rows = {name: row for row, name in enumerate(self.motions)}
-        return np.array([rows[name] for name in self.coordinates], dtype=int)
+        return np.array([self.rows[name] for name in self.coordinates], dtype=int)
 
     @property
     def turns(self) -> Booleans:
@@ -184,7 +191,7 @@ class Tree:
                 shift = shift + s[:, link.slide.row, None] * (link.R0 @ link.slide.axis)
             R[:, link.body] = R[:, link.base] @ turn
             p[:, link.body] = p[:, link.parent] + (R[:, link.parent] @ shift[..., None])[..., 0]
-        return Poses(R, p)
+        return Poses(R, p, s)
 
     @cached_property
     def _turning(self) -> tuple[Array, Array, Array]:
@@ -228,7 +235,7 @@ class Tree:
             v[:, B] = v[:, P] + np.cross(w[:, P], (poses.p[:, B] - poses.p[:, P])[:, :, None], axis=1)
             for motion in link.motions:
                 (w if motion.rotates else v)[:, B] += axes[:, motion.row, :, None] * self.C[motion.row]
-        return Velocities(w, v)
+        return Velocities(w, v, np.broadcast_to(self.C, (len(q), *self.C.shape)))
 
 
 def _motion_names(mechanism: Mechanism) -> list[str]:

@@ -169,12 +169,13 @@ def _legend(figure: Any, mechanism: Mechanism) -> None:
         y = i + 0.5
         path = arm.zigzag(np.array([0.0, y]), np.array([9.0, y]), 0.26)
         axes.plot(*path.T, color=style.spring_colour(i), linewidth=2.0, solid_joinstyle="round")
-        stiffness = f"{f'{spring.stiffness:#.4g}'.rstrip('.')} N/m"
-        pair = f"{style.clean(spring.body_a, 26)} – {style.clean(spring.body_b, 26)}"
+        value, unit = spring.strength
+        stiffness = f"{f'{value:#.4g}'.rstrip('.')} {unit}"
+        where = " – ".join(style.clean(part, 26) for part in spring.where.split(" – "))
         look = {"va": "center", "fontsize": size, "parse_math": False}
         axes.text(11, y, style.clean(spring.name, 22), color=style.INK, **look)
         axes.text(44, y, stiffness, ha="right", color=style.INK, **look)
-        axes.text(47, y, pair, color=style.FAINT, **look)
+        axes.text(47, y, where, color=style.FAINT, **look)
     if len(named) < len(springs):
         text = f"and {len(springs) - len(named)} more springs"
         axes.text(11, lines - 0.5, text, va="center", fontsize=size, color=style.FAINT)

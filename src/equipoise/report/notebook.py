@@ -24,7 +24,7 @@ def html(value: object) -> str:
 @html.register
 def _(value: Balance) -> str:
     key = f"scheme-{crc32(repr(value.mechanism).encode()):08x}"  # a notebook shows many
-    tables = [sections.springs_table(value)] if value.mechanism.springs else []
+    tables = sections.springs_tables(value)
     tables += [sections.torque_table(value)] if value.coordinates else []
     parts = [
         f"<p><strong>{escape(value.mechanism.name)}</strong>: {escape(verdict(value).plain)}</p>",

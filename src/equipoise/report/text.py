@@ -12,7 +12,6 @@ from rich.text import Text
 from ..balance import Balance
 from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
-from ..spring import Vec3
 from ..synthesis import METHODS, Design, Parameter
 from ..synthesis.free_length import Ordinary
 from ..units import SI_UNITS
@@ -85,12 +84,9 @@ def torque_table(balance: Balance) -> Table:
 
 
 def spring_lines(balance: Balance) -> Iterator[Text]:
-    """Each spring with its stiffness, attachments, greatest length and greatest force."""
+    """Each spring: how strong, where, and its greatest use."""
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
-        free = f", free length {1e3 * spring.free_length:.4g} mm" if spring.free_length else ""
-        ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)} mm"
-        most = f"up to {1e3 * use.max_length:.0f} mm, {use.max_force:.3g} N"
-        yield Text(f"{spring.name}: {spring.stiffness:.5g} N/m{free}, {ends}, {most}")
+        yield Text(spring.sentence(use.path, use.force))
 
 
 def design_lines(design: Design) -> Iterator[RenderableType]:
@@ -217,7 +213,3 @@ def _range(pair: tuple[float, float]) -> str:
 
 def _pose(value: float, unit: str) -> str:
     return f"{np.degrees(value):.1f} deg" if unit == "rad" else f"{1e3 * value:.1f} mm"
-
-
-def _millimetres(p: Vec3) -> str:
-    return "(" + ", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) + ")"

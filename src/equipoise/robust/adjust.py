@@ -16,6 +16,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance, check
+from ..elements import lines
 from ..energy.peak import climb
 from ..energy.potential import Potential
 from ..errors import InputError
@@ -108,7 +109,7 @@ def adjust(
     problem = _Problem(mechanism, payload, sample(tree, POSES, seed))
     if not problem.unit:
         raise InputError(f"a payload on '{payload.link}' loads no joint")
-    handles = [Handle(i, what) for i in range(len(mechanism.springs)) for what in get_args(What)]
+    handles = [Handle(i, what) for i in range(len(lines(mechanism, "adjust"))) for what in get_args(What)]
     ways = []
     for i, handle in enumerate(handles):
         if progress:
@@ -211,7 +212,7 @@ class _Problem:
         J = torque_map.jacobian()
         found = []
         for handle in handles:
-            spring = mechanism.springs[handle.spring]
+            spring = lines(mechanism, "adjust")[handle.spring]
             if handle.what == "free_length":
                 alone = replace(mechanism.with_springs((replace(spring, free_length=1.0),)), provenance={})
                 ideal = alone.with_springs((replace(spring, free_length=0.0),))

@@ -61,7 +61,7 @@ class Release:
         settings: of the engine.
         unbalanced: (poses, n) the torque that holds the poses without springs [N m or N].
         radius: [m] of the uniform spheres that stood for bodies without an inertia; None when there are none.
-        soft: the name of the spring that lacked `SOFT` of its stiffness in `control`; None without springs.
+        soft: the name of the spring that lacked `SOFT` of its force in `control`; None without springs.
     """
 
     mechanism: Mechanism
@@ -211,6 +211,5 @@ def _felt_most(mechanism: Mechanism, q: Array, radius: float | None) -> str:
 
 def _softer(mechanism: Mechanism, name: str) -> Mechanism:
     return mechanism.with_springs(
-        replace(spring, stiffness=(1 - SOFT) * spring.stiffness) if spring.name == name else spring
-        for spring in mechanism.springs
+        spring.scaled(1 - SOFT) if spring.name == name else spring for spring in mechanism.springs
     )

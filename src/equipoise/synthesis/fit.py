@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..energy.potential import Potential
 from ..kinematics import Tree
 from ..mechanism import Mechanism
@@ -23,6 +24,7 @@ WIDTH = 8  # unknowns of a spring: log stiffness, u_a, u_b in their regions' coo
 SHRUNK = (1.0, 0.5, 0.25)  # starts: one attachment of every spring drawn in by so much, stiffened by as much
 SLACK = 10.0  # weight of a spring shorter than its free length, per share of it
 ITERATIONS, STALLED = 150, 15
+FREE_LENGTHS = "what gives springs a free length, or room,"  # in messages
 Penalty = Callable[[Array], tuple[Array, Array]]
 """Attachments (springs, 2, 3) [m] -> rows to keep at zero, and their derivative (rows, springs, 2, 3)."""
 
@@ -39,7 +41,7 @@ class Fit:
         penalty: Penalty | None,
     ) -> None:
         self.mechanism = mechanism
-        self.springs = [spring for spring in mechanism.springs if spring.name in lengths]
+        self.springs = [spring for spring in lines(mechanism, FREE_LENGTHS) if spring.name in lengths]
         self.free = np.array([lengths[spring.name] for spring in self.springs])
         self.size = np.where(self.free > 0, self.free, 1.0)  # that slack is a share of
         tree = Tree.of(mechanism)
@@ -166,7 +168,7 @@ class Fit:
 
     def _all_ends(self, p: Array) -> Array:
         """(all springs, 2, 3) attachments, those of other springs as they are."""
-        ends = np.array([(s.p_a, s.p_b) for s in self.mechanism.springs])
+        ends = np.array([(s.p_a, s.p_b) for s in lines(self.mechanism, FREE_LENGTHS)])
         ends[[self.mechanism.springs.index(spring) for spring in self.springs]] = p
         return ends
 

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, Booleans, Complexes
-from ..energy.fourier import gravity_series, spring_series
-from ..energy.frames import Frames, NoFourierForm
+from ..energy.fourier import gravity_series
+from ..energy.frames import Frames
 from ..energy.potential import CHUNK_ENTRIES, Potential
 from ..energy.series import Series
-from ..errors import InputError
+from ..errors import InputError, NoFourierForm
 from ..kinematics import Poses, Tree, Velocities, sample
 from ..kinematics.sampling import whole_turns
 from ..rotation import skew
@@ -123,7 +123,7 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
         frames = Frames(tree)
         if not whole_turns(tree, frames.denominators):
             return None
-        load = Series.sum([gravity_series(frames), *(spring_series(frames, s) for s in mechanism.springs)])
+        load = Series.sum([gravity_series(frames), *(spring.series(frames) for spring in mechanism.springs)])
         forms = [_form(frames, problem, pair) for pair in problem.pairs]
     except NoFourierForm:
         return None

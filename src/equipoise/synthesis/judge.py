@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..balance import fourier_form
+from ..elements import Element, Spring
 from ..mechanism import Mechanism
-from ..spring import Spring
 from .design import FrontRow
 from .gram import Gram
 from .minimax import Peak
@@ -62,7 +62,7 @@ class Judge:
         )
 
 
-def _springs(problem: Problem, found: Springs, present: tuple[Spring, ...]) -> list[Spring]:
+def _springs(problem: Problem, found: Springs, present: tuple[Element, ...]) -> list[Spring]:
     taken = {spring.name for spring in present}
     names = (name for i in range(1, 10_000) if (name := f"spring {i}") not in taken)
     springs = []

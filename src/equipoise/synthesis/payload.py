@@ -14,10 +14,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import check
+from ..elements import Element
 from ..errors import Fault, InputError, nearest
 from ..io.text import Names
 from ..mechanism import Mechanism, PointMass
-from ..spring import Spring
 from .bevel.shoulder import Shoulder
 from .given import number, vectors
 
@@ -78,7 +78,7 @@ class Payload:
         name = Names(point.name for point in mechanism.masses).new("payload")
         return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
 
-    def residual(self, mechanism: Mechanism, springs: Sequence[Spring]) -> dict[str, float]:
+    def residual(self, mechanism: Mechanism, springs: Sequence[Element]) -> dict[str, float]:
         """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
         low, high = (check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high))
         return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))

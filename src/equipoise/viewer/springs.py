@@ -19,18 +19,30 @@ class SpringPanel:
     """Chooses a spring of the panel's model and changes it."""
 
     def __init__(self, panel: Panel) -> None:
-        self.panel, self.widgets = panel, []
+        self.panel = panel
+        self._forget()
         self.folder = panel.gui.add_folder("Springs")
         self.quiet = False
         self.rebuild()
 
     def rebuild(self) -> None:
         """The springs themselves have changed."""
-        for widget in self.widgets:
+        for widget in (*self.widgets, *self._own()):
             widget.remove()
-        self.widgets, self.handles = [], []
+        self._forget()
         with self.folder:
             self._widgets()
+
+    def _own(self) -> tuple[Any, ...]:
+        """The widgets of the chosen spring's own numbers."""
+        return (*self.sliders, *self.points, *self.handles, *([self.drag] if self.drag else []))
+
+    def _forget(self) -> None:
+        self.widgets: list[Any] = []
+        self.sliders: list[Any] = []
+        self.points: list[Any] = []
+        self.handles: list[Any] = []
+        self.drag: Any = None
 
     def _widgets(self) -> None:
         springs, gui = self.panel.model.springs, self.panel.gui
@@ -42,22 +54,32 @@ class SpringPanel:
         self.choice.on_update(lambda _: self._chosen())
         self.here = gui.add_checkbox("this one is on", self.panel.model.on[0])
         self.here.on_update(lambda _: self._switched())
-        self.stiffness = gui.add_slider("stiffness [N/m]", 1.0, 2.0, 0.1, 1.0)
-        self.stiffness.on_update(lambda _: self._edited())
-        self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), step=1.0) for label in ("a [mm]", "b [mm]")]
-        for point in self.points:
-            point.on_update(lambda _: self._edited())
-        self.drag = gui.add_checkbox("drag handles", False)
-        self.drag.on_update(lambda _: self._dragging())
-        self.widgets = [self.choice, self.here, self.stiffness, *self.points, self.drag]
+        self.widgets = [self.choice, self.here]
+        self._numbers()
+
+    def _numbers(self) -> None:
+        """The widgets of the chosen spring's own numbers, which are those of its kind."""
+        for widget in self._own():
+            widget.remove()
+        spring, gui = self.panel.model.springs[self.number], self.panel.gui
+        self.kind = spring.kind
+        with self.folder:
+            self.sliders = [gui.add_slider(knob.label, 1.0, 2.0, 0.1, 1.0) for knob in spring.knobs]
+            labels = ("a [mm]", "b [mm]") if spring.ends else ()
+            self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), step=1.0) for label in labels]
+            for widget in (*self.sliders, *self.points):
+                widget.on_update(lambda _: self._edited())
+            self.handles, self.drag = [], None
+            if spring.ends:
+                self.drag = gui.add_checkbox("drag handles", False)
+                self.drag.on_update(lambda _: self._dragging())
         size = 0.18 * self.panel.scene.size
-        for j in range(2):
+        for j in range(len(spring.ends)):
             handle = self.panel.server.scene.add_transform_controls(
                 f"/handle{j}", size, disable_rotations=True, visible=False, depth_test=False
             )
             handle.on_update(lambda event, j=j: self._dragged(j, event.target))
             self.handles.append(handle)
-            self.widgets.append(handle)
         self._chosen()
 
     @property
@@ -66,23 +88,28 @@ class SpringPanel:
 
     def follow(self) -> None:
         """Keep the handles on the spring's ends while the mechanism moves."""
-        if self.handles and self.drag.value:
+        if self.drag and self.drag.value:
             for handle, point in zip(self.handles, self.panel.scene.skeleton.springs[self.number], strict=True):
                 handle.position = self.panel.scene.world(point)
 
     def _chosen(self) -> None:
         with self.panel.lock:
+            if self.panel.model.springs[self.number].kind != self.kind:
+                self._numbers()
             self._values()
             self.follow()
 
     def _values(self) -> None:
         spring = self.panel.model.springs[self.number]
         self.quiet = True
-        top = float(f"{MOST * spring.stiffness:.2g}")
-        self.stiffness.max, self.stiffness.min, self.stiffness.step = top, top / 1000, top / 1000
-        self.stiffness.value = spring.stiffness
+        for slider, knob in zip(self.sliders, spring.knobs, strict=True):
+            value = knob.factor * getattr(spring, knob.field)
+            top = float(f"{MOST * value:.2g}") if knob.high is None else knob.high
+            low = top / 1000 if knob.low is None else knob.low
+            slider.max, slider.min, slider.step = top, low, (top - low) / 1000 if knob.low is not None else top / 1000
+            slider.value = value
         self.here.value = self.panel.model.on[self.number]
-        for point, p in zip(self.points, (spring.p_a, spring.p_b), strict=True):
+        for point, (_, p) in zip(self.points, spring.ends, strict=True):
             point.value = tuple(round(1000.0 * x, 1) + 0.0 for x in p)  # no minus zero
         self.quiet = False
 
@@ -98,18 +125,19 @@ class SpringPanel:
             return
         with self.panel.lock:
             spring, values = self.panel.model.springs[self.number], {}
-            if abs(self.stiffness.value - spring.stiffness) > 0.51 * self.stiffness.step:
-                values["stiffness"] = max(self.stiffness.value, self.stiffness.min)
-            for name, point in zip(("p_a", "p_b"), self.points, strict=True):
+            for slider, knob in zip(self.sliders, spring.knobs, strict=True):
+                if abs(slider.value - knob.factor * getattr(spring, knob.field)) > 0.51 * slider.step:
+                    values[knob.field] = max(slider.value, slider.min) / knob.factor
+            for name, point, (_, now) in zip(("p_a", "p_b"), self.points, spring.ends, strict=False):
                 p = np.array(point.value) / 1000.0
-                if np.abs(p - getattr(spring, name)).max() > 1.01 * SAME:
+                if np.abs(p - now).max() > 1.01 * SAME:
                     values[name] = tuple(float(x) for x in p)
             self._change(values)
 
     def _dragged(self, j: int, handle: Any) -> None:
         with self.panel.lock:
             spring = self.panel.model.springs[self.number]
-            body = (spring.body_a, spring.body_b)[j]
+            body, _ = spring.ends[j]
             place = self.panel.scene.local(body, handle.position)
             self._change({("p_a", "p_b")[j]: tuple(float(x) for x in place)})
             self._values()

@@ -45,10 +45,10 @@ class Batch(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """`gravity` (N,) energy [J], `length` (N, springs) [m], torque of gravity and of the springs (N, n) [N m or N]."""
+    """`gravity` (N,) energy [J], `path` (N, springs) [m or rad], torque of gravity and springs (N, n) [N m or N]."""
 
     gravity: Array
-    length: Array
+    path: Array
     gravity_torque: Array
     spring_torque: Array
 
@@ -100,13 +100,13 @@ class Kernel:
         return _empty(self._total.rows, N, np.dtype(dtype))
 
     def parts(self, q: ArrayLike, *, threads: int = 1, tier: Tier | None = None) -> Parts:
-        """Energies, lengths and torques of gravity and springs apart, at `q` (N, n) [rad or m]."""
+        """Energies, paths and torques of gravity and springs apart, at `q` (N, n) [rad or m]."""
         q = self._poses(q).astype(float, copy=False)
         out = _empty(self._split.rows, len(q), q.dtype)
         self._split.run(q.T, out, threads, tier)
         n, springs = self.tree.n, len(self.mechanism.springs)
-        gravity, length, gravity_torque, spring_torque = np.split(out, np.cumsum([1, springs, n]))
-        return Parts(gravity[0], length.T, gravity_torque.T, spring_torque.T)
+        gravity, path, gravity_torque, spring_torque = np.split(out, np.cumsum([1, springs, n]))
+        return Parts(gravity[0], path.T, gravity_torque.T, spring_torque.T)
 
     def _poses(self, q: ArrayLike) -> Real:
         q = np.asarray(q)

@@ -18,6 +18,11 @@ from ..text import percent, torque
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 
+HEADS = {
+    "m": ("k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]"),
+    "rad": ("k [N m/rad]", "relaxed at [deg]", "least [deg]", "largest [deg]", "largest torque [N m]"),
+}
+"""Columns of a table of springs whose path is a length, or an angle."""
 CONVENTIONS = (
     "A holding torque is what a joint has to supply to keep a pose: the derivative of the potential energy by its "
     "coordinate.",
@@ -35,30 +40,37 @@ def mechanism_section(balance: Balance) -> Section:
     looks: tuple[Block, ...] = (pictures.two_poses(balance), pictures.scheme(balance))
     if not balance.mechanism.springs:
         return Section("Mechanism", (*looks, Paragraph("It has no springs.")))
-    return Section("Mechanism and springs", (*looks, springs_table(balance), _attachments(balance)))
+    return Section("Mechanism and springs", (*looks, *springs_tables(balance), *_attachments(balance)))
 
 
-def springs_table(balance: Balance) -> Table:
-    """Each spring and how it is used."""
-    head = ("spring", "", "k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]")
-    rows = [
-        (
-            spring.name, symbol("k", i), Number(spring.stiffness, f"{spring.stiffness:.5g}"), _mm(spring.free_length),
-            _mm(use.min_length), _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
-        )
-        for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True))
-    ]  # fmt: skip
-    return Table.of("Springs, and how they are used over all poses looked at", head, rows)
+def springs_tables(balance: Balance) -> list[Table]:
+    """Each spring and how it is used; those along a line and those on joints apart."""
+    return [table for unit in HEADS if (table := _springs_table(balance, unit)) is not None]
 
 
-def _attachments(balance: Balance) -> Table:
+def _springs_table(balance: Balance, unit: str) -> Table | None:
+    show, rows = _mm if unit == "m" else _degrees, []
+    for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True)):
+        if spring.path_unit == unit:
+            strength, most = spring.strength[0], max(map(abs, use.force))
+            rows.append(
+                (
+                    spring.name, symbol("k", i), Number(strength, f"{strength:.5g}"),
+                    *map(show, (spring.free, *use.path)), Number(most, f"{most:.4g}"),
+                )
+            )  # fmt: skip
+    title = "Springs, and how they are used over all poses looked at"
+    return Table.of(title, ("spring", "", *HEADS[unit]), rows) if rows else None
+
+
+def _attachments(balance: Balance) -> list[Table]:
     ends = [
         (symbol(letter, i), spring.name, body, *map(_mm, p))
         for i, spring in enumerate(balance.mechanism.springs)
-        for letter, body, p in (("a", spring.body_a, spring.p_a), ("b", spring.body_b, spring.p_b))
+        for letter, (body, p) in zip("ab", spring.ends, strict=False)
     ]
     head = ("end", "spring", "body", "x [mm]", "y [mm]", "z [mm]")
-    return Table.of("Attachments, each in the frame of its body", head, ends)
+    return [Table.of("Attachments, each in the frame of its body", head, ends)] if ends else []
 
 
 def torque_section(balance: Balance) -> Section:
@@ -208,6 +220,10 @@ def _option(value: Any) -> str:
 
 def _mm(value: float) -> Number:
     return Number(value, f"{round(1e3 * value, 2) + 0.0:g}")
+
+
+def _degrees(value: float) -> Number:
+    return Number(value, f"{round(float(np.degrees(value)), 2) + 0.0:g}")
 
 
 def _pose(value: float, unit: str) -> str:

@@ -122,7 +122,7 @@ def scheme(balance: Balance, key: str = "scheme") -> Picture:
     """The schematic, whose letters the tables use; `key` makes its identifiers its own."""
     mechanism = balance.mechanism
     title = f"Schematic of {style.clean(mechanism.name, 60)}"
-    ends = "; ".join(f"spring {i} from {s.body_a} to {s.body_b}" for i, s in enumerate(mechanism.springs, start=1))
+    ends = "; ".join(f"spring {i} {s.between}" for i, s in enumerate(mechanism.springs, start=1))
     said = f"Links, joints and ground as lines, circles and hatching. {ends or 'No springs'}."
     letters = ": a and b are the ends of each spring, k its stiffness; the numbers are in the tables below"
     caption = f"{title}{letters if ends else ''}."

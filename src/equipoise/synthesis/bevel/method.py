@@ -18,12 +18,12 @@ from math import atan2, cos, pi, sin
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring, Vec3
 from ...errors import Fault, InfeasibleError, InputError
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import bounds
 from ...mechanism import Body, Coupling, Joint, Mechanism
-from ...spring import Spring, Vec3
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes
 from ..margin import torque_margin

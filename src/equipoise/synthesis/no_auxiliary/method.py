@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring
 from ...errors import Fault, InfeasibleError, InputError, nearest
 from ...kinematics import Tree
 from ...kinematics.groups import places
 from ...mechanism import Mechanism
-from ...spring import Spring
 from ..chain import Chain, ChainLink, chain, reasons
 from ..design import Design
 from ..given import Given, number, numbers
