@@ -15,6 +15,7 @@ SI_UNITS = {
     "angle": "rad",
     "mass": "kg",
     "stiffness": "N/m",
+    "torsional stiffness": "N m/rad",
     "acceleration": "m/s^2",
     "inertia": "kg m^2",
     "torque": "N m",

@@ -32,7 +32,7 @@ class FourierEnergy:
 
     Attributes:
         frequency: (T, n) real; zero in the constant term, and so is
-        degree: (T, n) whole numbers, of the sliding coordinates only.
+        degree: (T, n) whole numbers, of coordinates that slide or that a spring on a joint acts on.
         c: (T,) complex [J, or J/m^degree].
         scale: [J] the size of what has to be balanced: what each mass alone, or where gravity does no work each spring
             alone, makes the energy vary by, summed before anything cancels; 0 where that is nothing but rounding.
@@ -57,7 +57,7 @@ class FourierEnergy:
 
     @cached_property
     def reach(self) -> Array:
-        """(n,) the largest value of each coordinate [m or rad] where it slides something; see `bounds`."""
+        """(n,) the largest value of each coordinate [m or rad], where it has a degree; see `bounds`."""
         reach = np.abs(bounds(self.tree)).max(axis=0)
         return np.where(reach > 0, reach, 1.0)  # a slide locked at zero still carries its load
 
@@ -100,7 +100,7 @@ class FourierEnergy:
         return bool(np.isfinite(left + self.scale) and (self.scale == 0 or left <= EXACT * self.scale))
 
     def torque_bound(self) -> Array:
-        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (slides within `reach`)."""
+        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (what has a degree within `reach`)."""
         bound = self.amplitude @ np.abs(self.frequency)
         for j, factor, degree in self._slides():
             bound[j] += np.sum(np.abs(self.c) * factor * np.prod(self.reach**degree, axis=1))

@@ -7,7 +7,7 @@ joints it has 3^m terms, and joints outside the path never appear.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from math import lcm
 
@@ -77,6 +77,16 @@ class Frames:
                     parts += [cross, cross.T]
         return self._sum(parts, V)
 
+    def value(self, terms: Iterable[tuple[str, float]]) -> Series:
+        """``sum ratio s`` of joints (name, ratio), ``s = C q + s0``: degree one in each coordinate; (T, 1, 1)."""
+        n, (rows, ratios) = self.tree.n, zip(*((self.tree.rows[name], ratio) for name, ratio in terms), strict=True)
+        slopes = np.array(ratios) @ self.tree.C[list(rows)]
+        active = np.flatnonzero(slopes)
+        keys = np.zeros((1 + len(active), 2 * n), np.int32)
+        keys[np.arange(1, 1 + len(active)), n + active] = 1
+        values = np.concatenate([[np.array(ratios) @ self.tree.s0[list(rows)]], slopes[active]])
+        return Series(keys, values[:, None, None].astype(complex))
+
     def _sum(self, parts: list[Series], V: dict[int, Series]) -> Series:
         if not parts:
             return self.constant(np.zeros((1, 1)))
@@ -105,14 +115,9 @@ class Frames:
             body = link.parent
 
     def _slide(self, link: Link) -> Series:
-        """``R0 axis s`` with the joint's value ``s = C q + s0``: one term of degree one per coordinate."""
-        motion, n = link.motions[0], self.tree.n
-        direction = (link.R0 @ motion.axis)[:, None]
-        active = np.flatnonzero(self.tree.C[motion.row])
-        keys = np.zeros((1 + len(active), 2 * n), np.int32)
-        keys[np.arange(1, 1 + len(active)), n + active] = 1
-        values = np.concatenate([[self.tree.s0[motion.row]], self.tree.C[motion.row, active]])
-        return Series(keys, (values[:, None, None] * direction).astype(complex))
+        """``R0 axis s`` with the joint's value s."""
+        motion = link.motions[0]
+        return self.constant((link.R0 @ motion.axis)[:, None]) @ self.value(((self.tree.motions[motion.row], 1.0),))
 
     def _turn(self, link: Link) -> Series:
         """The body's orientation in its base: ``R0`` times three terms for each rotation."""

@@ -124,6 +124,8 @@ def _averages(problem: Problem) -> tuple[Array, Array] | None:
         if not whole_turns(tree, frames.denominators):
             return None
         load = Series.sum([gravity_series(frames), *(spring.series(frames) for spring in mechanism.springs)])
+        if load.keys[:, tree.n :].any():  # a spring on a joint: its energy is no function of directions
+            return None
         forms = [_form(frames, problem, pair) for pair in problem.pairs]
     except NoFourierForm:
         return None
