@@ -100,7 +100,7 @@ class FourierEnergy:
         return bool(np.isfinite(left + self.scale) and (self.scale == 0 or left <= EXACT * self.scale))
 
     def torque_bound(self) -> Array:
-        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (what has a degree within `reach`)."""
+        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (degrees within `reach`)."""
         bound = self.amplitude @ np.abs(self.frequency)
         for j, factor, degree in self._slides():
             bound[j] += np.sum(np.abs(self.c) * factor * np.prod(self.reach**degree, axis=1))
