@@ -101,7 +101,8 @@ def adjust(
     """
     if not KEPT <= tolerance < 1:
         raise InputError(f"the tolerance must be a share from {KEPT:g} to less than 1, found {tolerance:g}")
-    if not mechanism.springs:
+    springs = lines(mechanism, "adjust")
+    if not springs:
         raise InputError(f"mechanism '{mechanism.name}' has no springs to adjust")
     if not payload.low < payload.high:
         raise InputError("the payload must have a range, the smallest and the largest; for one, design with it")
@@ -109,7 +110,7 @@ def adjust(
     problem = _Problem(mechanism, payload, sample(tree, POSES, seed))
     if not problem.unit:
         raise InputError(f"a payload on '{payload.link}' loads no joint")
-    handles = [Handle(i, what) for i in range(len(lines(mechanism, "adjust"))) for what in get_args(What)]
+    handles = [Handle(i, what) for i in range(len(springs)) for what in get_args(What)]
     ways = []
     for i, handle in enumerate(handles):
         if progress:

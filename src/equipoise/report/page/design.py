@@ -12,6 +12,7 @@ import numpy as np
 from ..._version import __version__
 from ...balance import Balance
 from ...energy.fourier import EXACT
+from ...energy.potential import lumped_masses
 from ...io.yaml import to_text
 from ..schematic import symbol
 from ..text import percent, torque
@@ -180,7 +181,7 @@ def conventions_section(balance: Balance) -> Section:
     """What all of this takes for granted."""
     m = balance.mechanism
     gravity = ", ".join(f"{value:g}" for value in m.gravity)
-    total = sum(body.mass for body in m.bodies) + sum(mass.mass for mass in m.masses) + sum(s.mass for s in m.springs)
+    total = sum(mass for _, mass, _ in lumped_masses(m))
     texts = [
         f"Gravity is ({gravity}) m/s² in the world's frame; all that moves or stands weighs {total:.4g} kg together.",
         *CONVENTIONS,
