@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
-from .elements import Spring
+from .elements import Spring, TorsionSpring
 from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "Mechanism",
     "PointMass",
     "Spring",
+    "TorsionSpring",
     "Workspace",
     "__version__",
     "check",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from .element import Element, Vec3, lines
 from .spring import Spring
+from .torsion import TorsionSpring
 
-KINDS: dict[str, type[Element]] = {kind.kind: kind for kind in (Spring,)}
+KINDS: dict[str, type[Element]] = {kind.kind: kind for kind in (Spring, TorsionSpring)}
 """The kinds by their name in a mechanism file."""
 
-__all__ = ["KINDS", "Element", "Spring", "Vec3", "lines"]
+__all__ = ["KINDS", "Element", "Spring", "TorsionSpring", "Vec3", "lines"]

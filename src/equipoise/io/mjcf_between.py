@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..elements import Spring, Vec3
+from ..elements import Element, Spring, TorsionSpring, Vec3
 from ..mechanism import Coupling, Loop
 from .text import Names
 
@@ -102,9 +102,13 @@ class Between:
                 loops.append(Loop(body_a, p_a, body_b, p_b))
         return tuple(loops)
 
-    def springs(self) -> tuple[Spring, ...]:
+    def springs(self) -> tuple[Element, ...]:
         model = self.model
-        names, springs = Names(), []
+        names, springs = Names(), list[Element]()
+        for j, name in self.joint_of.items():
+            if model.jnt_stiffness[j] and int(model.jnt_type[j]) == int(self.mj.mjtJoint.mjJNT_HINGE):
+                rest = float(model.qpos_spring[model.jnt_qposadr[j]])
+                springs.append(TorsionSpring(names.new(f"{name} spring"), ((name, 1.0),), model.jnt_stiffness[j], rest))
         for t in range(model.ntendon):
             stiffness = float(model.tendon_stiffness[t])
             if not stiffness:
@@ -113,13 +117,21 @@ class Between:
             first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
             wraps = slice(first, first + count)
             low, high = (float(x) for x in model.tendon_lengthspring[t])
-            if count != 2 or (model.wrap_type[wraps] != int(self.mj.mjtWrap.mjWRAP_SITE)).any():
-                self.faults.append(
-                    f"tendon '{name}' does not run straight between two sites: that is no spring we know"
-                )
-            elif high - low > 1e-12 * max(high, 1.0):
+            along = [self.joint_of.get(int(j), "") for j in model.wrap_objid[wraps]]
+            if high - low > 1e-12 * max(high, 1.0):
                 self.faults.append(
                     f"tendon '{name}' is slack from {low:g} to {high:g} m: give springlength one length twice, '0 0'"
+                )
+            elif (model.wrap_type[wraps] == int(self.mj.mjtWrap.mjWRAP_JOINT)).all():
+                hinges = (model.jnt_type[model.wrap_objid[wraps]] == int(self.mj.mjtJoint.mjJNT_HINGE)).all()
+                ratios = [float(ratio) for ratio in model.wrap_prm[wraps]]
+                if hinges:
+                    springs.append(TorsionSpring(name, tuple(zip(along, ratios, strict=True)), stiffness, low))
+                else:
+                    self.faults.append(f"tendon '{name}' is a spring along slides: only one along hinges is known")
+            elif count != 2 or (model.wrap_type[wraps] != int(self.mj.mjtWrap.mjWRAP_SITE)).any():
+                self.faults.append(
+                    f"tendon '{name}' does not run straight between two sites: that is no spring we know"
                 )
             else:
                 (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in model.wrap_objid[wraps])

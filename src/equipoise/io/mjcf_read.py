@@ -7,12 +7,13 @@ What becomes what, where the two differ:
   length in the reference pose: the compiler says so. A slack range, wrapping and pulleys are refused.
 - A linear equality between joints, or of a fixed tendon held at a length, is a coupling; a joint held alone is locked.
 - A connect is a loop; two connects between the same bodies make a hinge loop, a third one is refused as a weld is.
+- A hinge's stiffness, and a fixed tendon's along hinges, is a torsion spring.
 - A massless leaf of a body with nothing but a mass in one point is a point mass.
 
 - A capsule or sphere with a name is the space that its body takes. The keyframe "assembled" says how loops close.
 
 Other geometry, contacts, actuators, sensors and armature do not act on statics and are skipped. What acts and has no
-counterpart (free joints, joint springs, gravity compensation, curved equalities) is refused by name.
+counterpart (free joints, springs of slides and balls, gravity compensation, curved equalities) is refused by name.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -181,10 +182,8 @@ class _Reader:
         if kind not in types:
             self.faults.append(f"joint '{name}' is free: a mechanism that is not held falls; weld it to the world")
             return turn
-        if model.jnt_stiffness[j]:
-            self.faults.append(
-                f"joint '{name}' has a torsion spring (stiffness): only springs between points are known"
-            )
+        if model.jnt_stiffness[j] and types[kind] != "revolute":
+            self.faults.append(f"joint '{name}' has a spring (stiffness): only that of a hinge is known, torsion")
         axis, zero = model.jnt_axis[j], float(model.qpos0[model.jnt_qposadr[j]])
         if types[kind] == "revolute" and zero:  # drawn at its reference angle, zero is elsewhere
             turn = turn @ about(axis, np.array([-zero]))[0]

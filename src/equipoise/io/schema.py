@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
-from ..elements import KINDS, Element, Spring
+from ..elements import KINDS, Element, Spring, TorsionSpring
 from ..errors import Fault, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
@@ -25,6 +25,7 @@ from .fields import (
     Point,
     Stiffness,
     Text,
+    TorsionalStiffness,
     Type,
     held,
     limits,
@@ -143,7 +144,28 @@ class SpringItem(Item):
         return Spring(**{key: value for key, value in self.values().items() if key != "kind"})
 
 
-SPRINGS: dict[str, type[Item]] = {Spring.kind: SpringItem}
+class TorsionItem(Item):
+    noun = "a torsion spring"
+    name: Text
+    kind: Kind
+    joint: Text | None = None
+    joints: dict[str, Number] = Field(default={}, validate_default=True)
+    stiffness: TorsionalStiffness
+    rest: Angle = 0.0
+
+    @field_validator("joints")
+    @classmethod
+    def _either(cls, value: dict[str, float], info: ValidationInfo) -> dict[str, float]:
+        if ("joint" in info.data and info.data["joint"] is None) == (not value):
+            raise ValueError("give 'joint', or 'joints' with a ratio each, and not both")
+        return value
+
+    def element(self) -> Element:
+        joints = self.joints or {self.joint: 1.0}
+        return TorsionSpring(self.name, tuple(joints.items()), self.stiffness, self.rest)
+
+
+SPRINGS: dict[str, type[Item]] = {Spring.kind: SpringItem, TorsionSpring.kind: TorsionItem}
 
 
 class MassItem(Item):
