@@ -20,7 +20,7 @@ from test_mjcf import set_pose
 from zoo import counterweight, exact_pendulum
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.reproduce.cho2012 import shoulder

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
 from equipoise.mechanism import Mechanism

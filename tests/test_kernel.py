@@ -24,8 +24,8 @@ from equipoise.energy.kernel import Kernel
 from equipoise.energy.kernel.generated import Generated
 from equipoise.energy.kernel.kernel import CACHE, CHUNK, LINE, TIERS
 from equipoise.energy.kernel.trace import Trace
-from equipoise.energy.potential import lumped_masses
 from equipoise.errors import UnsupportedError
+from equipoise.masses import lumped_masses
 from equipoise.mechanism import Mechanism
 
 ROUNDING = 1e-13

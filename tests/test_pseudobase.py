@@ -19,7 +19,7 @@ from test_mjcf import set_pose
 from zoo import counterweight, gantry, lenzo_spherical, mirrored_pair, parallelogram_lamp, vertical_slide
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.synthesis import METHODS

@@ -188,7 +188,7 @@ def test_a_delta_robot_with_its_rod_pairs():
     assert found.stays
     assert found.design.constraint_error < 1e-5
     # what is not balanced agrees with ours, through the loops
-    from equipoise.energy.potential import Potential
+    from equipoise.energy.evaluate import Potential
 
     np.testing.assert_allclose(without, Potential(m.with_springs(()))(q).torque, rtol=1e-8, atol=1e-8)
 
@@ -240,7 +240,7 @@ def test_the_motion_of_lin2010():
     every = slice(None, None, 10)
     found = play(m, lin2010.TIMES[every], lin2010.motion()[every], SPHERE)
     assert np.ptp(found.gravity + found.springs) < 1e-9 * np.ptp(found.gravity)
-    from equipoise.energy.potential import Potential
+    from equipoise.energy.evaluate import Potential
 
     ours = Potential(m)(lin2010.motion()[every]).gravity
     np.testing.assert_allclose(found.gravity, ours - ours[0], atol=1e-6 * np.ptp(ours))

@@ -13,9 +13,9 @@ from random_mechanisms import random_mechanism, random_poses, with_torsion
 from test_potential import mujoco_state
 
 import equipoise as eq
+from equipoise.energy.evaluate import Potential
 from equipoise.energy.fourier import FourierEnergy
 from equipoise.energy.kernel import Kernel
-from equipoise.energy.potential import Potential
 from equipoise.errors import InputError, NoFourierForm, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.io.yaml import to_text

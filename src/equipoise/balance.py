@@ -14,10 +14,11 @@ import numpy as np
 
 from .arrays import Array
 from .energy.closed import ClosedEnergy
+from .energy.evaluate import Potential
 from .energy.fourier import EXACT, FourierEnergy
 from .energy.frames import MAX_TERMS
 from .energy.peak import climb
-from .energy.potential import Potential, State
+from .energy.reference import State
 from .errors import InputError, NoFourierForm
 from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism

@@ -18,9 +18,9 @@ import numpy as np
 from ..arrays import Array, Booleans, Complexes, Integers
 from ..kinematics.sampling import bounds
 from ..kinematics.tree import Tree
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 from .frames import MAX_TERMS, Frames
-from .potential import lumped_masses
 from .series import Series
 
 EXACT = 1e-10  # relative: what counts as zero

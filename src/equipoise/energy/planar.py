@@ -24,8 +24,8 @@ from ..arrays import Array, Complexes
 from ..elements import Spring, Vec3, lines
 from ..errors import UnsupportedError
 from ..kinematics import Tree
+from ..masses import lumped_masses
 from ..mechanism import WORLD, Joint, Mechanism
-from .potential import lumped_masses
 
 PARALLEL = 1e-9  # sine of the angle between axes that count as parallel
 

@@ -11,8 +11,8 @@ from ..arrays import Array
 from ..balance import largest_share
 from ..elements import lines
 from ..energy.peak import climb
-from ..energy.potential import lumped_masses
 from ..kinematics import Tree, sample
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 from .stretch import Stretch
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arrays import Array, Booleans, Integers
 from ..mechanism import SINGLE, Joint, Mechanism
@@ -164,6 +165,17 @@ class Tree:
     def rest(self) -> Array:
         """(n,) a configuration in which it can be: all zero, or as its loops are assembled."""
         return np.zeros(self.n)
+
+    def batch(self, q: ArrayLike) -> Array:
+        """Configurations as (N, n), from (N, n) or (n,) for one.
+
+        Raises:
+            ValueError: another shape.
+        """
+        q = np.atleast_2d(np.asarray(q, float))
+        if q.shape[1:] != (self.n,):
+            raise ValueError(f"q has shape {q.shape}, expected (N, {self.n}) for {self.coordinates}")
+        return q
 
     def values(self, q: Array) -> Array:
         """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance, check
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..errors import Fault, InputError
 from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree

@@ -14,8 +14,8 @@ import numpy as np
 from ..arrays import Array
 from ..balance import check
 from ..energy.blocks import StiffnessBlocks
+from ..energy.evaluate import Potential
 from ..energy.planar import Installation, PlanarArm
-from ..energy.potential import Potential
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism
 from ..synthesis.planar.criteria import Objective, failures, sign_failures

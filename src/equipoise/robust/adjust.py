@@ -17,8 +17,8 @@ import numpy as np
 from ..arrays import Array
 from ..balance import Balance, check
 from ..elements import lines
+from ..energy.evaluate import Potential
 from ..energy.peak import climb
-from ..energy.potential import Potential
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism

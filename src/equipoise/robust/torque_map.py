@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..elements import lines
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, Velocities
 from ..mechanism import Mechanism
 from ..rotation import skew

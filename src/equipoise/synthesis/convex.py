@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..energy.potential import lumped_masses
 from ..errors import EquipoiseError, InfeasibleError, InputError
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 from ..validate import whole_number
 from .bound import least_rms

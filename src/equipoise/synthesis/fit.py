@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..elements import lines
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..kinematics import Tree
 from ..mechanism import Mechanism
 from .gram import stretch

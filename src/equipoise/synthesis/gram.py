@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, Booleans, Complexes
+from ..energy.evaluate import Potential
 from ..energy.fourier import gravity_series
 from ..energy.frames import Frames
-from ..energy.potential import CHUNK_ENTRIES, Potential
+from ..energy.reference import CHUNK_ENTRIES
 from ..energy.series import Series
 from ..errors import InputError, NoFourierForm
 from ..kinematics import Poses, Tree, Velocities, sample

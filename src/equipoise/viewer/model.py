@@ -14,7 +14,8 @@ from .._version import __version__
 from ..arrays import Array
 from ..balance import Balance, check
 from ..elements import Element, Spring, Vec3
-from ..energy.potential import Potential, State
+from ..energy.evaluate import Potential
+from ..energy.reference import State
 from ..kinematics import Tree, sample
 from ..kinematics.sampling import inside
 from ..mechanism import Mechanism, PointMass

@@ -12,8 +12,8 @@ import numpy as np
 from ..._version import __version__
 from ...balance import Balance
 from ...energy.fourier import EXACT
-from ...energy.potential import lumped_masses
 from ...io.yaml import to_text
+from ...masses import lumped_masses
 from ..schematic import symbol
 from ..text import percent, torque
 from . import pictures

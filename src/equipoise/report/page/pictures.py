@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...balance import Balance
-from ...energy.potential import Potential
+from ...energy.evaluate import Potential
 from ...kinematics import Tree
 from .. import arm, loads, style, svg
 from ..figure import holding, picture

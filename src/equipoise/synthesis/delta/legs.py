@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...energy.potential import lumped_masses
 from ...kinematics import Tree
 from ...kinematics.groups import Place, places
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Link
+from ...masses import lumped_masses
 from ...mechanism import Mechanism
 from ...rotation import about
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...elements import Spring
-from ...energy.potential import Potential
+from ...energy.evaluate import Potential
 from ...errors import Fault, InputError
 from ...kinematics import Tree
 from ...mechanism import Mechanism

@@ -1,15 +1,13 @@
-"""Gravity and springs of every kind, with the analytic torque: the reference sums them one by one.
+"""Gravity and springs of every kind, with the analytic torque, summed one by one: slow, and obviously right.
 
     U = -sum m g . p  +  sum of each spring's own energy,      torque = dU/dq
 
 The torque is what the actuators must supply to hold the pose [N m, or N for a prismatic coordinate]; it is minus the
-generalised force of gravity and springs. Many poses of a tree are computed by
-`kernel`, whose tests compare it with the reference.
+generalised force of gravity and springs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +15,9 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..kinematics.tree import Tree
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 
-FEW = 32  # poses for which writing down a program does not pay
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 
 
@@ -41,6 +39,14 @@ class State:
     gravity_torque: Array
     spring_torque: Array
 
+    @staticmethod
+    def of(mechanism: Mechanism, gravity: Array, path: Array, gravity_torque: Array, spring_torque: Array) -> State:
+        """With the energies that the springs' laws give for their paths."""
+        springs = np.empty_like(path)
+        for i, spring in enumerate(mechanism.springs):
+            springs[:, i] = spring.law.energy(path[:, i])
+        return State(gravity, springs, path, gravity_torque, spring_torque)
+
     @property
     def energy(self) -> Array:
         """(N,) total potential energy [J]."""
@@ -52,19 +58,8 @@ class State:
         return self.gravity_torque + self.spring_torque
 
 
-def lumped_masses(mechanism: Mechanism) -> Iterator[tuple[str, float, Array]]:
-    """Every mass as (body, mass [kg], point in the body's frame (3,) [m]): bodies, point masses, springs."""
-    for body in mechanism.bodies:
-        yield body.name, body.mass, np.array(body.com)
-    for mass in mechanism.masses:
-        yield mass.body, mass.mass, np.array(mass.position)
-    for spring in mechanism.springs:
-        for name, mass, p in spring.lumps():
-            yield name, mass, np.array(p)
-
-
-class Potential:
-    """Energy and torque of a mechanism at given configurations.
+class Reference:
+    """Energy and torque of a mechanism at given configurations, by definition.
 
     Raises:
         InputError: its loops cannot be closed.
@@ -77,28 +72,12 @@ class Potential:
         self._masses = [(self.tree.index[b], m, p) for b, m, p in lumped_masses(mechanism) if m]
 
     def __call__(self, q: ArrayLike) -> State:
-        """Energies, lengths and torques at `q`, (N, n) or (n,) for one pose (N = 1)."""
-        q = self._poses(q)
-        if len(q) < FEW or self.mechanism.loops:
-            return self.reference(q)
-        from .kernel import Kernel
-
-        parts = Kernel.of(self.mechanism).parts(q)
-        return self._state(parts.gravity, parts.path, parts.gravity_torque, parts.spring_torque)
-
-    def reference(self, q: ArrayLike) -> State:
-        """The same, everything summed one by one."""
-        q = self._poses(q)
+        """Energies, paths and torques at `q`, (N, n) or (n,) for one pose (N = 1)."""
+        q = self.tree.batch(q)
         size = max(1, CHUNK_ENTRIES // (6 * max(1, self.tree.n) * len(self.tree.names)))
         parts = [self._chunk(q[i : i + size]) for i in range(0, max(1, len(q)), size)]
         fields = ("gravity", "springs", "path", "gravity_torque", "spring_torque")
         return State(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
-
-    def _poses(self, q: ArrayLike) -> Array:
-        q = np.atleast_2d(np.asarray(q, float))
-        if q.shape[1:] != (self.tree.n,):
-            raise ValueError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
-        return q
 
     def _chunk(self, q: Array) -> State:
         poses = self.tree.poses(q)
@@ -111,10 +90,4 @@ class Potential:
         for i, spring in enumerate(self.mechanism.springs):
             path[:, i], torque = spring.state(self.tree, poses, velocities)
             spring_torque += torque
-        return self._state(gravity, path, gravity_torque, spring_torque)
-
-    def _state(self, gravity: Array, path: Array, gravity_torque: Array, spring_torque: Array) -> State:
-        springs = np.empty_like(path)
-        for i, spring in enumerate(self.mechanism.springs):
-            springs[:, i] = spring.law.energy(path[:, i])
-        return State(gravity, springs, path, gravity_torque, spring_torque)
+        return State.of(self.mechanism, gravity, path, gravity_torque, spring_torque)
