@@ -1,4 +1,4 @@
-"""Potential energy: the slow sum (`reference`), what chooses a quicker way (`evaluate`), its Fourier form (`fourier`)."""
+"""Potential energy: the slow sum (`reference`), the way chosen (`evaluate`), its exact Fourier form (`fourier`)."""
 
 from ..errors import NoFourierForm
 from .evaluate import Potential
