@@ -13,6 +13,7 @@ from typing import Any, Literal, get_args
 
 from .elements import Element, Vec3
 from .errors import InputError
+from .validate import faults
 
 WORLD = "world"
 JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
@@ -138,8 +139,6 @@ class Mechanism:
     capsules: tuple[Capsule, ...] = ()
 
     def __post_init__(self) -> None:
-        from .validate import faults
-
         found = faults(self)
         if found:
             raise InputError(found)

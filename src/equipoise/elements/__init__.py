@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .element import Element, Vec3, lines
-from .spring import Spring
+from .element import Element, Vec3
+from .spring import Spring, lines
 from .torsion import TorsionSpring
 
 KINDS: dict[str, type[Element]] = {kind.kind: kind for kind in (Spring, TorsionSpring)}

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from ..arrays import Array
-from ..errors import Fault, UnsupportedError
+from ..errors import Fault
 from .law import Law
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..energy.series import Series
     from ..kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
-    from .spring import Spring
 
 Vec3 = tuple[float, float, float]
 End = tuple[str, Vec3]  # a body's name and a point in its frame [m]
@@ -154,17 +153,3 @@ class Element:
     def scaled(self, factor: float) -> Element:
         """The same, its force times `factor`."""
         raise NotImplementedError
-
-
-def lines(mechanism: Mechanism, what: str) -> tuple[Spring, ...]:
-    """The elements of a mechanism, all of them springs between two points.
-
-    Raises:
-        UnsupportedError: another kind, which `what` does not cover; the message names it.
-    """
-    from .spring import Spring
-
-    for element in mechanism.springs:
-        if not isinstance(element, Spring):
-            raise UnsupportedError(f"'{element.name}' is {element.noun}: {what} covers springs between two points only")
-    return tuple(element for element in mechanism.springs if isinstance(element, Spring))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..errors import Fault, NoFourierForm, at_least, finite, known, positive
+from ..errors import Fault, NoFourierForm, UnsupportedError, at_least, finite, known, positive
 from .element import Element, End, Knob, Pens, Range, Vec3
 from .law import Linear
 
@@ -165,6 +165,18 @@ class Spring(Element):
 
     def scaled(self, factor: float) -> Spring:
         return replace(self, stiffness=factor * self.stiffness)
+
+
+def lines(mechanism: Mechanism, what: str) -> tuple[Spring, ...]:
+    """The elements of a mechanism, all of them springs between two points.
+
+    Raises:
+        UnsupportedError: another kind, which `what` does not cover; the message names it.
+    """
+    for element in mechanism.springs:
+        if not isinstance(element, Spring):
+            raise UnsupportedError(f"'{element.name}' is {element.noun}: {what} covers springs between two points only")
+    return tuple(element for element in mechanism.springs if isinstance(element, Spring))
 
 
 def _length(d: Array) -> Array:

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import Fault, InputError
+from . import models
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
 
 YAML_SUFFIXES = (".yaml", ".yml")
-URDF_SUFFIXES = (".urdf", ".xml")
-MJCF_SUFFIXES = (".mjcf", ".xml")
-MODEL_SUFFIXES = tuple(dict.fromkeys((*URDF_SUFFIXES, *MJCF_SUFFIXES)))  # what a mechanism file can build on
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
@@ -32,16 +29,10 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
         from . import yaml
 
         return yaml.read(path)
-    if suffix in MJCF_SUFFIXES and (suffix not in URDF_SUFFIXES or _is_mjcf(path)):
-        from . import mjcf_read
-
-        return mjcf_read.read(path)
-    if suffix in URDF_SUFFIXES:
-        from . import urdf
-
-        return urdf.read(Path(path))
+    if suffix in models.MODEL_SUFFIXES:
+        return models.read(path)
     found = f"a mechanism file cannot be {_suffix(path)}"
-    raise InputError(Fault((), found, (*YAML_SUFFIXES, *MODEL_SUFFIXES), file=os.fspath(path)))
+    raise InputError(Fault((), found, (*YAML_SUFFIXES, *models.MODEL_SUFFIXES), file=os.fspath(path)))
 
 
 def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
@@ -69,15 +60,6 @@ def check_savable(path: str | os.PathLike[str]) -> None:
         found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
         raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
     check_writable(path)
-
-
-def _is_mjcf(path: str | os.PathLike[str]) -> bool:
-    """Whether the first element of an XML file is MJCF's: comments and declarations may come before it."""
-    from .files import read_text
-
-    text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
-    first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
-    return first is not None and first[1] == "mujoco"
 
 
 def _suffix(path: str | os.PathLike[str]) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path as FilePath
 from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..units import to_si
-from . import MODEL_SUFFIXES, dh, load
+from . import dh, models
 from .emit import to_text
 from .fields import DIMENSION_OF
 from .files import read_text
@@ -140,14 +140,14 @@ def _model(name: str, located: Located) -> Mechanism:
     """The mechanism of a model file; its name is relative to the folder of the mechanism file."""
     path = FilePath(located.file).parent / name
     suffix = path.suffix.lower()
-    if suffix not in MODEL_SUFFIXES:
+    if suffix not in models.MODEL_SUFFIXES:
         message = f"'{name}' cannot be read: a model is a URDF or an MJCF file"
-        raise located.error([Fault(("model",), message, MODEL_SUFFIXES)])
+        raise located.error([Fault(("model",), message, models.MODEL_SUFFIXES)])
     if not path.is_file():
-        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in MODEL_SUFFIXES)
+        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in models.MODEL_SUFFIXES)
         raise located.error([Fault(("model",), f"there is no file {nearest(name, beside)}", tuple(beside[:12]))])
     try:
-        model = load(path)
+        model = models.read(path)
     except InputError as error:
         raise located.error([Fault(("model",), f"'{name}' cannot be used as a model"), *error.faults]) from error
     for key in ("loops", "springs", "masses"):

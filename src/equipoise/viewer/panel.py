@@ -42,7 +42,7 @@ class Panel:
             self.energies = self.gui.add_html(readout.energies(model))
         with self.gui.add_folder("Design"):
             self._design()
-        self.springs = SpringPanel(self)
+        self.springs = SpringPanel(server, model, scene, self.lock, lambda: self.show(rebuild=True), self.say)
         self.quiet = False
 
     def show(self, rebuild: bool = False) -> None:

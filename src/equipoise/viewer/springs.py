@@ -2,26 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from threading import RLock
+from typing import Any
 
 import numpy as np
 
 from ..errors import EquipoiseError
-
-if TYPE_CHECKING:
-    from .panel import Panel
+from .model import Model
+from .scene import Scene
 
 MOST = 3.0  # the stiffness slider goes to this many times the present one
 SAME = 5e-5  # [m] a number field shows tenths of a millimetre
 
 
 class SpringPanel:
-    """Chooses a spring of the panel's model and changes it."""
+    """Chooses a spring of the model and changes it, while it holds `lock`.
 
-    def __init__(self, panel: Panel) -> None:
-        self.panel = panel
+    Afterwards `rebuilt` brings the page to the model's state; `say` shows a title and a text.
+    """
+
+    def __init__(
+        self,
+        server: Any,
+        model: Model,
+        scene: Scene,
+        lock: RLock,
+        rebuilt: Callable[[], None],
+        say: Callable[[str, str], None],
+    ) -> None:
+        self.server, self.model, self.scene, self.lock = server, model, scene, lock
+        self.rebuilt, self.say = rebuilt, say
         self._forget()
-        self.folder = panel.gui.add_folder("Springs")
+        self.folder = server.gui.add_folder("Springs")
         self.quiet = False
         self.rebuild()
 
@@ -45,14 +58,14 @@ class SpringPanel:
         self.drag: Any = None
 
     def _widgets(self) -> None:
-        springs, gui = self.panel.model.springs, self.panel.gui
+        springs, gui = self.model.springs, self.server.gui
         if not springs:
             self.widgets = [gui.add_markdown("No springs yet: *Re-optimise* chooses three.")]
             return
         names = tuple(f"{i + 1}: {spring.name}" for i, spring in enumerate(springs))
         self.choice = gui.add_dropdown("spring", names)
         self.choice.on_update(lambda _: self._chosen())
-        self.here = gui.add_checkbox("this one is on", self.panel.model.on[0])
+        self.here = gui.add_checkbox("this one is on", self.model.on[0])
         self.here.on_update(lambda _: self._switched())
         self.widgets = [self.choice, self.here]
         self._numbers()
@@ -61,7 +74,7 @@ class SpringPanel:
         """The widgets of the chosen spring's own numbers, which are those of its kind."""
         for widget in self._own():
             widget.remove()
-        spring, gui = self.panel.model.springs[self.number], self.panel.gui
+        spring, gui = self.model.springs[self.number], self.server.gui
         self.kind = spring.kind
         with self.folder:
             self.sliders = [gui.add_slider(knob.label, 1.0, 2.0, 0.1, 1.0) for knob in spring.knobs]
@@ -73,9 +86,9 @@ class SpringPanel:
             if spring.ends:
                 self.drag = gui.add_checkbox("drag handles", False)
                 self.drag.on_update(lambda _: self._dragging())
-        size = 0.18 * self.panel.scene.size
+        size = 0.18 * self.scene.size
         for j in range(len(spring.ends)):
-            handle = self.panel.server.scene.add_transform_controls(
+            handle = self.server.scene.add_transform_controls(
                 f"/handle{j}", size, disable_rotations=True, visible=False, depth_test=False
             )
             handle.on_update(lambda event, j=j: self._dragged(j, event.target))
@@ -89,18 +102,18 @@ class SpringPanel:
     def follow(self) -> None:
         """Keep the handles on the spring's ends while the mechanism moves."""
         if self.drag and self.drag.value:
-            for handle, point in zip(self.handles, self.panel.scene.skeleton.springs[self.number], strict=True):
-                handle.position = self.panel.scene.world(point)
+            for handle, point in zip(self.handles, self.scene.skeleton.springs[self.number], strict=True):
+                handle.position = self.scene.world(point)
 
     def _chosen(self) -> None:
-        with self.panel.lock:
-            if self.panel.model.springs[self.number].kind != self.kind:
+        with self.lock:
+            if self.model.springs[self.number].kind != self.kind:
                 self._numbers()
             self._values()
             self.follow()
 
     def _values(self) -> None:
-        spring = self.panel.model.springs[self.number]
+        spring = self.model.springs[self.number]
         self.quiet = True
         for slider, knob in zip(self.sliders, spring.knobs, strict=True):
             value = knob.factor * getattr(spring, knob.field)
@@ -108,23 +121,23 @@ class SpringPanel:
             low = top / 1000 if knob.low is None else knob.low
             slider.max, slider.min, slider.step = top, low, (top - low) / 1000 if knob.low is not None else top / 1000
             slider.value = value
-        self.here.value = self.panel.model.on[self.number]
+        self.here.value = self.model.on[self.number]
         for point, (_, p) in zip(self.points, spring.ends, strict=True):
             point.value = tuple(round(1000.0 * x, 1) + 0.0 for x in p)  # no minus zero
         self.quiet = False
 
     def _switched(self) -> None:
         if not self.quiet:
-            with self.panel.lock:
-                self.panel.model.switch(self.number, self.here.value)
-                self.panel.show(rebuild=True)
+            with self.lock:
+                self.model.switch(self.number, self.here.value)
+                self.rebuilt()
 
     def _edited(self) -> None:
         """Take the fields' numbers, where they differ from the spring by more than their own rounding."""
         if self.quiet:
             return
-        with self.panel.lock:
-            spring, values = self.panel.model.springs[self.number], {}
+        with self.lock:
+            spring, values = self.model.springs[self.number], {}
             for slider, knob in zip(self.sliders, spring.knobs, strict=True):
                 if abs(slider.value - knob.factor * getattr(spring, knob.field)) > 0.51 * slider.step:
                     values[knob.field] = max(slider.value, slider.min) / knob.factor
@@ -135,10 +148,10 @@ class SpringPanel:
             self._change(values)
 
     def _dragged(self, j: int, handle: Any) -> None:
-        with self.panel.lock:
-            spring = self.panel.model.springs[self.number]
+        with self.lock:
+            spring = self.model.springs[self.number]
             body, _ = spring.ends[j]
-            place = self.panel.scene.local(body, handle.position)
+            place = self.scene.local(body, handle.position)
             self._change({("p_a", "p_b")[j]: tuple(float(x) for x in place)})
             self._values()
 
@@ -146,15 +159,15 @@ class SpringPanel:
         if not values:
             return
         try:
-            self.panel.model.change(self.number, **values)
+            self.model.change(self.number, **values)
         except EquipoiseError as error:
-            self.panel.say("Not possible", str(error))
+            self.say("Not possible", str(error))
             self._values()
             return
-        self.panel.show(rebuild=True)
+        self.rebuilt()
 
     def _dragging(self) -> None:
-        with self.panel.lock:
+        with self.lock:
             for handle in self.handles:
                 handle.visible = self.drag.value
             self.follow()
