@@ -16,7 +16,6 @@ import grimp
 
 SOURCE, PACKAGE = Path(__file__).parents[1] / "src", "equipoise"
 ALLOWED = {
-    ("equipoise.energy.potential", "equipoise.energy.kernel"): "the slow sum hands many poses to the fast kernel",
     ("equipoise.kinematics.tree", "equipoise.kinematics.linkage"): "`Tree.of` gives the mechanism with loops its own",
     ("equipoise.notebook", "equipoise.report.notebook"): "values show themselves in a notebook, when it asks",
 }
