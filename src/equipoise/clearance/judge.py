@@ -91,6 +91,8 @@ def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
         arm = rate / np.maximum(length[:, i], 1e-12)[:, None]
         floor = TURNED * np.abs(arm).max(initial=0)
         rarer = np.minimum((arm > floor).mean(axis=0), (arm < -floor).mean(axis=0))
-        over = {name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0}
+        over: dict[str, float] = {
+            name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0
+        }
         found.append(Line(spring.name, float((length[:, i] < spring.free_length).mean()), over))
     return found
