@@ -392,4 +392,4 @@ def test_coordinates_are_in_the_order_of_the_file() -> None:
     for seed in range(20):
         m = random_mechanism(seed)
         assert Tree.of(m).coordinates == m.coordinates
-        assert len(m.coordinate_units) == len(m.coordinates)
+        assert [c.turns for c in m.coordinates] == Tree.of(m).turns.tolist()

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .arrays import Array
+from .coordinate import Coordinate
 from .energy.closed import ClosedEnergy
 from .energy.evaluate import Potential
 from .energy.fourier import EXACT, FourierEnergy
@@ -111,14 +112,14 @@ class Balance(Shown):
     use: tuple[SpringUse, ...]
 
     @property
-    def coordinates(self) -> tuple[str, ...]:
-        """The independent coordinates, in the file's order."""
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The independent coordinates, in the file's order: names that know their units."""
         return Tree.of(self.mechanism).coordinates
 
     @property
     def units(self) -> tuple[str, ...]:
         """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return Tree.of(self.mechanism).units
+        return tuple(coordinate.unit for coordinate in self.coordinates)
 
     @property
     def mobility(self) -> Mobility | None:
@@ -129,7 +130,7 @@ class Balance(Shown):
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
-        return largest_share(self.residual.max, self.unbalanced.max, self.units)
+        return largest_share(self.residual.max, self.unbalanced.max, self.coordinates)
 
     def balanced(self, tolerance: float = EXACT, torque: float | None = None) -> bool:
         """Whether it is exact, or the residual stays within a share of the unbalanced torque, or within `torque`."""
@@ -242,11 +243,11 @@ def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[Four
         return None, str(why)
 
 
-def largest_share(residual: Array, unbalanced: Array, units: Sequence[str]) -> float:
+def largest_share(residual: Array, unbalanced: Array, coordinates: Sequence[Coordinate]) -> float:
     """The largest of (n,) residual torques over the largest unbalanced one of the same unit (inf over 0)."""
-    shares = [0.0]
-    for unit in ("rad", "m"):
-        left, whole = (float(x[np.array(units) == unit].max(initial=0)) for x in (residual, unbalanced))
+    shares, turns = [0.0], np.array([coordinate.turns for coordinate in coordinates], bool)
+    for kind in (turns, ~turns):
+        left, whole = (float(x[kind].max(initial=0)) for x in (residual, unbalanced))
         if left > 0:
             shares.append(left / whole if whole > 0 else np.inf)
     return max(shares)

@@ -9,6 +9,7 @@ from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
 
+from .coordinate import Coordinate, Slide
 from .errors import Fault, InputError, Path, at_least, finite, known, nearest, shorten
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def _names(m: Mechanism) -> Iterator[Fault]:
     if not _printable(m.name):
         yield Fault(("name",), f"has a character that cannot be printed: {m.name!a}")
     # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
-    spherical = {f"{j.name}.{letter}" for j in m.joints if j.type == "spherical" for letter in "xyz"}
+    spherical = {name for j in m.joints if j.type == "spherical" for name in j.coordinates}
     for i, joint in enumerate(m.joints):
         if joint.name in spherical:
             yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
@@ -127,10 +128,9 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
         ):
             found = ", ".join(f"{limit:g}" for limit in joint.range)
             yield Fault(("joints", i, "range"), f"must be two finite numbers, lower first, found [{found}]")
-        unit = "N" if joint.type == "prismatic" else "N m"
-        for key, value, per in (("damping", joint.damping, " s/m" if unit == "N" else " s/rad"),
-                                ("friction", joint.friction, "")):  # fmt: skip
-            yield from at_least(("joints", i, key), value, 0, unit + per)
+        kind = Slide if joint.type == "prismatic" else Coordinate
+        for key, value, per in (("damping", joint.damping, f" s/{kind.unit}"), ("friction", joint.friction, "")):
+            yield from at_least(("joints", i, key), value, 0, kind.load_unit + per)
             if value and joint.type in ("fixed", "parallelogram"):
                 yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
         if joint.type == "parallelogram" and joint.follows is None:

@@ -86,7 +86,9 @@ def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
         arm = spring.lever_arms(tree, poses, velocities)
         floor = TURNED * np.abs(arm).max(initial=0)
         rarer = np.minimum((arm > floor).mean(axis=0), (arm < -floor).mean(axis=0))
-        over = {name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0}
+        over: dict[str, float] = {
+            name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0
+        }
         slack = float((spring.path(tree, poses) < spring.free_length).mean())
         found.append(Line(spring.name, slack, over))
     return found

@@ -73,7 +73,7 @@ def _move(text: str, tree: Tree) -> Move:
     start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
     if end <= start:
         raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
-    dimension = "angle" if tree.turns[tree.coordinates.index(name)] else "length"
+    dimension = tree.coordinates[tree.coordinates.index(name)].dimension
     first, last = (options.quantity(part, dimension, "--move") for part in parts[3:])
     return Move(name, start, end, first, last)
 
@@ -94,7 +94,7 @@ def _table(path: Path, tree: Tree) -> Motion:
     for name, unit in columns:
         if name != "time" and name not in tree.coordinates:
             raise fault(at, f"no coordinate {nearest(name, tree.coordinates)}", ("time", *tree.coordinates))
-        dimension = "time" if name == "time" else (tree.turns[tree.coordinates.index(name)] and "angle") or "length"
+        dimension = "time" if name == "time" else tree.coordinates[tree.coordinates.index(name)].dimension
         try:
             factors.append(to_si(f"1 {unit}", dimension) if unit else 1.0)
         except ValueError as error:

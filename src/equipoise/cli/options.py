@@ -80,14 +80,15 @@ def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:
     """
     from ..kinematics import Tree
 
-    tree, found = Tree.of(mechanism), {}
-    units = dict(zip(tree.coordinates, tree.units, strict=True))
+    coordinates, found = Tree.of(mechanism).coordinates, {}
     for text in texts:
         name, equals, value = text.rpartition("=")
-        if equals and name not in units:
-            raise InputError(Fault(("--friction",), f"there is no coordinate {nearest(name, units)}", tuple(units)))
-        for joint in (name,) if equals else [joint for joint, unit in units.items() if unit == "rad"]:
-            found[joint] = quantity(value, "torque" if units[joint] == "rad" else "force", "--friction")
+        if equals and name not in coordinates:
+            problem = f"there is no coordinate {nearest(name, coordinates)}"
+            raise InputError(Fault(("--friction",), problem, coordinates))
+        for coordinate in coordinates:
+            if coordinate == name if equals else coordinate.turns:
+                found[coordinate] = quantity(value, coordinate.load, "--friction")
     return found
 
 

@@ -15,7 +15,7 @@ from ..errors import EquipoiseWarning
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
-    from ..synthesis.problem import Progress
+    from ..progress import Progress
 
 
 def load(file: Path) -> Mechanism:

@@ -6,7 +6,6 @@ masses.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -16,6 +15,7 @@ from ..balance import Balance, SpringUse
 from ..elements import Spring, lines
 from ..errors import Fault, InputError, nearest
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from .compression import CompressionSpring
 from .extension import ExtensionSpring
 from .leaves import Leaves, leaves
@@ -93,7 +93,7 @@ def bill(
     balance: Balance,
     options: Options | None = None,
     kind: str | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Bill:
     """The bill of a judged design.
 
@@ -108,10 +108,9 @@ def bill(
         raise InputError(Fault(("springs",), f"mechanism '{mechanism.name}' has none; design some first"))
     if kind is not None and kind not in KINDS:
         raise InputError(Fault(("realise",), f"unknown realisation {nearest(kind, KINDS)}", KINDS))
-    items, springs = [], lines(mechanism, "hardware")
+    items, springs, report = [], lines(mechanism, "hardware"), progress or silent
     for i, (spring, use) in enumerate(zip(springs, balance.use, strict=True)):
-        if progress:
-            progress(f"spring {i + 1} of {len(mechanism.springs)}", i / (len(mechanism.springs) + 1))
+        report(f"spring {i + 1} of {len(springs)}", i / (len(springs) + 1))
         ways = sorted(realisations(balance, i, options), key=rank)
         if kind is not None:
             ways.sort(key=lambda way: way.kind != kind)
@@ -121,8 +120,7 @@ def bill(
     if len(made) < len(chosen):
         return Bill(balance, tuple(items), options, None, None)
     built = mechanism.with_springs(_heavy(spring, way) for spring, way in zip(springs, made, strict=True))
-    if progress:
-        progress("judging what is built", 1 - 1 / (len(chosen) + 1))
+    report("judging what is built", 1 - 1 / (len(chosen) + 1))
     left = leaves(built, [way.stretch for way in made], [way.friction for way in made])
     return Bill(balance, tuple(items), options, built, left)
 

@@ -94,4 +94,4 @@ def leaves(
     best, _ = climb(tree, quantities, q, seed)
     unbalanced, residual, band = np.split(best, [n, 2 * n])
     rms = np.sqrt(np.mean(quantities(q)[:, n : 2 * n] ** 2, axis=0))
-    return Leaves(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.units))
+    return Leaves(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.coordinates))

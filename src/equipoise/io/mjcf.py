@@ -80,7 +80,7 @@ def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     waiting = {coupling.joint: coupling for coupling in mechanism.couplings}
     for joint in mechanism.joints:
         if joint.type in TYPES and joint.name not in waiting:
-            names = [f"{joint.name}.{letter}" for letter in "xyz"] if joint.type == "spherical" else [joint.name]
+            names = joint.coordinates
             result[joint.name] = JointValue(TYPES[joint.type], tuple((name, 1.0) for name in names))
     types = {joint.name: joint.type for joint in mechanism.joints}
     while waiting:  # each round settles those that depend on settled ones; there are no rings (see `validate`)

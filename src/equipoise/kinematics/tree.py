@@ -87,8 +87,8 @@ class Tree:
 
     Attributes:
         names: body names, the world first; `index` maps a name to its number.
-        motions: names of the elementary motions; `rows` maps a name to its row.
-        coordinates: names of the coordinates q.
+        motions: what each elementary motion is measured by; `rows` maps a name to its row.
+        coordinates: those of q.
         links: one per body but the world, parents before children.
         C: (motions, n) elementary joint values are ``s = C q + s0``.
         s0: (motions,) [rad or m].
@@ -103,15 +103,14 @@ class Tree:
         self.index = {name: i for i, name in enumerate(self.names)}
         self.coordinates = mechanism.coordinates
         self.n = len(self.coordinates)
-        self.motions = tuple(_motion_names(mechanism))
-        self.rows = rows = {name: row for row, name in enumerate(self.motions)}
-        self.links = tuple(self._links(rows))
-        self.C, self.s0 = _couplings(mechanism, rows)
+        self.motions = tuple(c for joint in mechanism.joints for c in joint.coordinates)
+        self.rows: dict[str, int] = {name: row for row, name in enumerate(self.motions)}
+        self.links = tuple(self._links(self.rows))
+        self.C, self.s0 = _couplings(mechanism, self.rows)
         ranges = {j.name: j.range for j in mechanism.joints if j.range is not None}
-        self.lower = np.array([ranges.get(name, (-np.inf, np.inf))[0] for name in rows])
-        self.upper = np.array([ranges.get(name, (-np.inf, np.inf))[1] for name in rows])
-        prismatic = {joint.name for joint in mechanism.joints if joint.type == "prismatic"}
-        self.rotates = np.array([name not in prismatic for name in rows], dtype=bool)
+        self.lower = np.array([ranges.get(name, (-np.inf, np.inf))[0] for name in self.motions])
+        self.upper = np.array([ranges.get(name, (-np.inf, np.inf))[1] for name in self.motions])
+        self.rotates = np.array([motion.turns for motion in self.motions], dtype=bool)
 
     @staticmethod
     @lru_cache(maxsize=32)
@@ -155,11 +154,6 @@ class Tree:
     def turns(self) -> Booleans:
         """(n,) whether each coordinate is an angle."""
         return self.rotates[self.coordinate_rows]
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return tuple("rad" if turns else "m" for turns in self.turns)
 
     @property
     def rest(self) -> Array:
@@ -250,19 +244,9 @@ class Tree:
         return Velocities(w, v, np.broadcast_to(self.C, (len(q), *self.C.shape)))
 
 
-def _motion_names(mechanism: Mechanism) -> list[str]:
-    names: list[str] = []
-    for joint in mechanism.joints:
-        if joint.type == "spherical":
-            names += [f"{joint.name}.{letter}" for letter in "xyz"]
-        elif joint.type in SINGLE:
-            names.append(joint.name)
-    return names
-
-
 def _motions(joint: Joint, rows: dict[str, int]) -> tuple[Motion, ...]:
     if joint.type == "spherical":
-        return tuple(Motion(np.eye(3)[i], rows[f"{joint.name}.{letter}"], True) for i, letter in enumerate("xyz"))
+        return tuple(Motion(axis, rows[name], True) for axis, name in zip(np.eye(3), joint.coordinates, strict=True))
     if joint.type in SINGLE:
         axis = np.array(joint.axis, float)
         axis /= np.abs(axis).max()  # first, so that a very long or short axis does not overflow

@@ -144,15 +144,14 @@ def holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array)
     """The largest holding torque in a pose, without and with springs."""
     if not len(before):
         return ""
-    units = np.array(balance.units)
-    unit = "rad" if "rad" in units else "m"
-    what, symbol = loads.UNITS[unit]
-    largest = [float(np.abs(torque[units == unit]).max()) for torque in (before, after)]
-    text = f"largest holding {what} {style.number(largest[0])}"
+    kind = next((c for c in balance.coordinates if c.turns), balance.coordinates[0])
+    own = np.array([c.turns == kind.turns for c in balance.coordinates])
+    largest = [float(np.abs(torque[own]).max()) for torque in (before, after)]
+    text = f"largest holding {kind.load} {style.number(largest[0])}"
     if mechanism.springs:
         limit = loads.below(balance)
         text += f" → {style.number(largest[1]) if limit is None else 0}"
-    return f"{text} {symbol}"
+    return f"{text} {kind.load_unit}"
 
 
 def _legend(figure: Any, mechanism: Mechanism) -> None:
@@ -191,9 +190,9 @@ def _torque(figure: Any, balance: Balance) -> None:
     left, right, bottom, top, gap = 0.625 + 0.0068 * longest, 0.97, 0.185, 0.79, 0.13
     loads.key(figure, balance, 0.625, 0.845)
     row = min((top - bottom - gap * (len(groups) - 1)) / len(rows), 0.17)
-    for unit, group in groups.items():
+    for kind, group in groups.items():
         axes = figure.add_axes((left, top - row * len(group), right - left, row * len(group)))
-        loads.draw(axes, balance, unit, group)
+        loads.draw(axes, balance, kind, group)
         top -= row * len(group) + gap
     text = f"solid: rms; pale and number: largest, over {balance.certificate.samples} random poses"
     if len(rows) == loads.MOST < len(names):

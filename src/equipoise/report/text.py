@@ -9,7 +9,9 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..arrays import Array
 from ..balance import Balance
+from ..coordinate import Coordinate
 from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
 from ..synthesis import METHODS, Design, Parameter
@@ -42,11 +44,7 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
         f"total {_range((low, high))}, mean {balance.constant:.6g} J"
     )
     if not balance.exact and len(balance.coordinates):
-        pose = ", ".join(
-            f"{name} {_pose(value, unit)}"
-            for name, value, unit in zip(balance.coordinates, balance.worst_configuration, balance.units, strict=True)
-        )
-        yield Text(f"worst pose: {pose}")
+        yield Text(f"worst pose: {pose(balance.coordinates, balance.worst_configuration)}")
     yield from spring_lines(balance)
 
 
@@ -75,11 +73,11 @@ def torque_table(balance: Balance) -> Table:
     for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
-    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
+    for j, coordinate in enumerate(balance.coordinates):
         loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
         bound = "-" if balance.bound is None else torque(balance.bound[j], floor)
         cells = [torque(load[j], floor) for load in loads]
-        table.add_row(Text(name), *cells, bound, "N m" if unit == "rad" else "N")
+        table.add_row(Text(coordinate), *cells, bound, coordinate.load_unit)
     return table
 
 
@@ -211,5 +209,6 @@ def _range(pair: tuple[float, float]) -> str:
     return f"{pair[0]:.6g} to {pair[1]:.6g} J"
 
 
-def _pose(value: float, unit: str) -> str:
-    return f"{np.degrees(value):.1f} deg" if unit == "rad" else f"{1e3 * value:.1f} mm"
+def pose(coordinates: Sequence[Coordinate], values: Array) -> str:
+    """Every coordinate with its value, on one line."""
+    return ", ".join(coordinate.show(value) for coordinate, value in zip(coordinates, values.tolist(), strict=True))

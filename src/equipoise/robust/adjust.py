@@ -22,9 +22,9 @@ from ..energy.peak import climb
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
-from ..synthesis.problem import Progress
 from .moves import Handle, Move, Way, What, moved, sets, value
 from .scatter import Scatter
 from .torque_map import TorqueMap
@@ -111,15 +111,13 @@ def adjust(
     if not problem.unit:
         raise InputError(f"a payload on '{payload.link}' loads no joint")
     handles = [Handle(i, what) for i in range(len(springs)) for what in get_args(What)]
-    ways = []
+    ways, report = [], progress or silent
     for i, handle in enumerate(handles):
-        if progress:
-            progress("trying what to move", i / (len(handles) + 2))
+        report("trying what to move", i / (len(handles) + 2))
         ways.append(problem.way((handle,)))
     chosen = problem.fewest(handles, tolerance)
     best = problem.way(chosen)
-    if progress:
-        progress("judging the adjusted design", len(handles) / (len(handles) + 2))
+    report("judging the adjusted design", len(handles) / (len(handles) + 2))
     ends = (check(payload.on(best.low, payload.low)), check(payload.on(best.high, payload.high)))
     fixed = problem.settled(chosen, payload.middle)
     left = payload.residual(fixed, fixed.springs)

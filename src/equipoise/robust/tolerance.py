@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..coordinate import Coordinate
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
-from ..synthesis.problem import Progress
 from ..validate import MAX_SAMPLES, whole_number
 from .scatter import Parameter, Scatter
 from .torque_map import TorqueMap
@@ -51,13 +52,8 @@ class Tolerance:
     share: Array
 
     @property
-    def coordinates(self) -> tuple[str, ...]:
+    def coordinates(self) -> tuple[Coordinate, ...]:
         return Tree.of(self.mechanism).coordinates
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return Tree.of(self.mechanism).units
 
     @cached_property
     def margin(self) -> Array:
@@ -148,7 +144,7 @@ def tolerance(
     rows = tree.n * poses
     peak, mean, square = np.empty((builds, tree.n)), np.zeros(rows), np.zeros(rows)
     rng, size = np.random.default_rng(seed), max(16, CHUNK_ENTRIES // rows)
-    nominal = torque.nominal.astype(np.float32)[:, None]
+    nominal, report = torque.nominal.astype(np.float32)[:, None], progress or silent
     for start in range(0, builds, size):
         count = min(size, builds - start)
         tau = torque(scatter.draw(rng, count, len(torque.parameters)) * torque.deviation)
@@ -156,8 +152,7 @@ def tolerance(
         tau -= nominal  # a variance about the drawing loses nothing to rounding
         mean += tau.sum(axis=1)
         square += np.einsum("rb,rb->r", tau, tau)
-        if progress:
-            progress("building", (start + count) / builds)
+        report("building", (start + count) / builds)
     mean /= builds
     J = torque.jacobian()
     weight = np.where(tree.turns, 1.0, Mounts.of(mechanism).reach).repeat(poses)[:, None]
@@ -190,7 +185,7 @@ def _friction(given: Mapping[str, float] | float | None, tree: Tree) -> dict[str
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        given = {name: given for name, turns in zip(tree.coordinates, tree.turns, strict=True) if turns}
+        given = {coordinate: given for coordinate in tree.coordinates if coordinate.turns}
     for name, value in given.items():
         if name not in tree.coordinates:
             problem = f"there is no coordinate {nearest(name, tree.coordinates)}"

@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..coordinate import Coordinate
 from ..errors import Fault, InputError
 from ..kinematics.sampling import sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..validate import whole_number
 from .engine import Engine, Settings
 
@@ -23,8 +25,6 @@ LOOKS = 100  # times that the drift is read during a run
 SECONDS = (0.01, 3600.0)  # of a run
 SOFT = 0.01  # share of its stiffness that the soft spring lacks
 MOVES = 10.0  # times the tolerance that the soft spring must move it at least
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Release:
     """The run, and its positive control.
 
     Attributes:
-        coordinates, units: of the mechanism, and "rad" or "m" of each.
+        coordinates: of the mechanism.
         seconds: of every run; tolerance: the drift that counts as staying [rad, or m of slides].
         poses: (poses, n) where it was let go [rad or m].
         joints: names of the engine's joints, in the order of `Drift.moved`.
@@ -65,8 +65,7 @@ class Release:
     """
 
     mechanism: Mechanism
-    coordinates: tuple[str, ...]
-    units: tuple[str, ...]
+    coordinates: tuple[Coordinate, ...]
     seconds: float
     tolerance: float
     poses: Array
@@ -159,7 +158,7 @@ def release(
     if engine.tree.n == 0:
         raise InputError(f"mechanism '{mechanism.name}' has no joint that moves: nothing to let go")
     q = sample(engine.tree, poses, seed)
-    report = progress or (lambda what, share: None)
+    report = progress or silent
     runs = 2 if control and mechanism.springs else 1
     design = _drift(engine, q, seconds, lambda share: report("letting go", share / runs))
     bare = Engine(mechanism.with_springs(()), radius)
@@ -172,7 +171,7 @@ def release(
     names = tuple(engine.model.joint(j).name for j in range(engine.model.njnt))
     tree = engine.tree
     return Release(
-        mechanism, tree.coordinates, tree.units, seconds, tolerance, q, names, engine.settings, design, unbalanced,
+        mechanism, tree.coordinates, seconds, tolerance, q, names, engine.settings, design, unbalanced,
         radius if any(body.mass and body.inertia is None for body in mechanism.bodies) else None, soft, moved,
     )  # fmt: skip
 

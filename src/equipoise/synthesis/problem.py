@@ -5,7 +5,7 @@ Building a problem is separate from solving it, so that it can be looked at and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -16,11 +16,11 @@ from ..arrays import Array
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
+from ..progress import Progress as Progress
 from ..validate import MAX_SAMPLES, whole_number
 from .mounts import Mounts
 
 Pair = tuple[str, str]
-Progress = Callable[[str, float], None]  # what is being done, and the share of it that is done
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
 Shape = Literal["ball", "box"]

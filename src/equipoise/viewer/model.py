@@ -19,11 +19,11 @@ from ..energy.reference import State
 from ..kinematics import Tree, sample
 from ..kinematics.sampling import inside
 from ..mechanism import Mechanism, PointMass
+from ..progress import Progress
 from ..report.poses import View, choose
 from ..report.skeleton import Skeleton
 from ..synthesis import Design, Region, design
 from ..synthesis.mounts import Mounts
-from ..synthesis.problem import Progress
 
 POSES, CLOSED = 256, 48  # random poses of the live residual; closing loops takes longer
 TRAIL = 250  # poses of the last motion

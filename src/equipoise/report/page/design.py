@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
+from math import degrees
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..._version import __version__
 from ...balance import Balance
+from ...coordinate import Coordinate
 from ...energy.fourier import EXACT
 from ...io.yaml import to_text
 from ...masses import lumped_masses
@@ -96,10 +96,10 @@ def torque_table(balance: Balance) -> Table:
     floor = _floor(balance)
     loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
     rows = []
-    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
+    for j, name in enumerate(balance.coordinates):
         cells: list[Cell] = [Number(float(load[j]), torque(float(load[j]), floor)) for load in loads]
         bound = "not known" if balance.bound is None else Number(balance.bound[j], torque(balance.bound[j], floor))
-        rows.append((name, *cells, bound, "N m" if unit == "rad" else "N"))
+        rows.append((name, *cells, bound, name.load_unit))
     head = (
         "coordinate", "largest without springs", "rms without", "largest with springs", "rms with", "proved bound",
         "unit",
@@ -109,16 +109,10 @@ def torque_table(balance: Balance) -> Table:
 
 def _worst(balance: Balance) -> Table:
     floor = _floor(balance)
-    pose = zip(
-        balance.coordinates,
-        balance.worst_configuration.tolist(),
-        balance.worst_torque.tolist(),
-        balance.units,
-        strict=True,
-    )
+    pose = zip(balance.coordinates, balance.worst_configuration.tolist(), balance.worst_torque.tolist(), strict=True)
     rows = [
-        (name, Number(value, _pose(value, unit)), Number(load, _signed(load, floor)), "N m" if unit == "rad" else "N")
-        for name, value, load, unit in pose
+        (name, Number(value, _value(name, value)), Number(load, _signed(load, floor)), name.load_unit)
+        for name, value, load in pose
     ]
     return Table.of("The worst pose that was found", ("coordinate", "value", "holding torque", "unit"), rows)
 
@@ -224,8 +218,9 @@ def _mm(value: float) -> Number:
 
 
 def _degrees(value: float) -> Number:
-    return Number(value, f"{round(float(np.degrees(value)), 2) + 0.0:g}")
+    return Number(value, f"{round(degrees(value), 2) + 0.0:g}")
 
 
-def _pose(value: float, unit: str) -> str:
-    return f"{np.degrees(value):.1f}°" if unit == "rad" else f"{1e3 * value:.1f} mm"
+def _value(coordinate: Coordinate, value: float) -> str:
+    unit = "°" if coordinate.turns else f" {coordinate.shown_unit}"
+    return f"{coordinate.scale * value:.1f}{unit}"

@@ -25,8 +25,8 @@ from ...energy.planar import PlanarArm
 from ...energy.symbols import Angles, SymbolicBlocks, design_equations
 from ...errors import Fault, InputError
 from ...mechanism import Body, Joint, Mechanism
+from ...progress import Progress
 from ...validate import whole_number
-from ..problem import Progress
 from .criteria import Failure, Objective, failures, objections
 from .exclusion import Layout, Leaf, Proof, prove
 from .installing import Solution, solve

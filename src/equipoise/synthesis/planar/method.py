@@ -18,11 +18,11 @@ import numpy as np
 from ...energy.planar import PlanarArm, obstacles
 from ...errors import EquipoiseError, Fault, InfeasibleError, InputError
 from ...mechanism import Mechanism
+from ...progress import Progress
 from ...validate import whole_number
 from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method, Parameter
-from ..problem import Progress
 from .criteria import failures
 from .exclusion import Layout, prove
 from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward

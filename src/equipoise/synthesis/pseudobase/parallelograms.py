@@ -86,7 +86,7 @@ class Builder:
         auxiliaries: dict[int, str] = {}
         # ball joints are zero where it is assembled: there their three angles are far from being two
         q = self._widest(modules) if self.real else np.zeros(self._tree.n)
-        assembly = dict(zip(self._tree.coordinates, q.tolist(), strict=True))
+        assembly: dict[str, float] = dict(zip(self._tree.coordinates, q.tolist(), strict=True))
         R = self._tree.poses(q[None]).R[0]
         for i, module in modules.items():
             link = self.links[i]
