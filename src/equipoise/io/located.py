@@ -57,7 +57,6 @@ class Located:
     def at(self, fault: Fault, line: int, column: int) -> Fault:
         """The fault at a line and column of this file, with the line shown."""
         source = self.lines[line - 1] if line <= len(self.lines) else ""
-        source = "".join(c if c.isprintable() or c == "\t" else "\ufffd" for c in source)  # a terminal would obey them
         return fault.at(self.file, line, column, source if len(source) <= 160 else source[:157] + "...")
 
     def error(self, faults: Iterable[Fault] = ()) -> InputError:
