@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 Path = tuple[str | int, ...]  # where in a file: ("joints", 2, "parent")
 SHOWN = 20  # faults of one input; the others are counted
+COUNTED = 200  # faults of one input that are looked for: each is compared with all names
 LONGEST = 500  # characters of one message and of one list of choices
 COMPARED = 200  # names that a misspelt one is compared with, those of its own length first
 
@@ -65,7 +66,8 @@ class InputError(EquipoiseError):
         self.faults: tuple[Fault, ...] = (faults,) if isinstance(faults, Fault) else tuple(faults)
         lines = [str(fault) for fault in self.faults[:SHOWN]]
         if len(self.faults) > SHOWN:
-            lines.append(f"and {len(self.faults) - SHOWN:,} more")
+            least = "at least " if len(self.faults) >= COUNTED else ""
+            lines.append(f"and {least}{len(self.faults) - SHOWN} more")
         super().__init__("\n".join(lines))
 
 

@@ -3,32 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from math import isfinite
 from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
 
-from .errors import Fault, InputError, Path, nearest
+from .errors import COUNTED, Fault, InputError, Path, nearest
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 MAX_SAMPLES = 10_000_000
+MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
+"""What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
 
 def faults(mechanism: Mechanism) -> list[Fault]:
     """Everything that is wrong with a mechanism, as faults whose paths follow the mechanism file."""
-    return [
-        *_numbers(mechanism),
-        *_names(mechanism),
-        *_references(mechanism),
-        *_joints(mechanism),
-        *_tree(mechanism),
-        *_couplings(mechanism),
-        *_springs(mechanism),
-        *_loops(mechanism),
-        *_branch(mechanism),
-    ]
+    too_many = list(_sizes(mechanism))
+    if too_many:
+        return too_many
+    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch)
+    return list(islice((fault for check in checks for fault in check(mechanism)), COUNTED))
+
+
+def _sizes(m: Mechanism) -> Iterator[Fault]:
+    for kind, most in MOST.items():
+        if (count := len(getattr(m, kind))) > most:
+            yield Fault((kind,), f"at most {most} are worked with, found {count:,}")
 
 
 def whole_number(name: str, value: object, least: int, most: int | None = None) -> None:
