@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 MOST = 3.0  # the stiffness slider goes to this many times the present one
 SAME = 5e-5  # [m] a number field shows tenths of a millimetre
+FAR = 10.0  # sizes of the mechanism: attachments are this near their bodies' origins, or as the file has them
 
 
 class SpringPanel:
@@ -44,7 +45,10 @@ class SpringPanel:
         self.here.on_update(lambda _: self._switched())
         self.stiffness = gui.add_slider("stiffness [N/m]", 1.0, 2.0, 0.1, 1.0)
         self.stiffness.on_update(lambda _: self._edited())
-        self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), step=1.0) for label in ("a [mm]", "b [mm]")]
+        points = [x for spring in springs for p in (spring.p_a, spring.p_b) for x in p]
+        self.far = 1000.0 * max(FAR * self.panel.scene.size, 2 * float(np.abs(points).max()))
+        ends = {"min": (-self.far,) * 3, "max": (self.far,) * 3, "step": 1.0}
+        self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), **ends) for label in ("a [mm]", "b [mm]")]
         for point in self.points:
             point.on_update(lambda _: self._edited())
         self.drag = gui.add_checkbox("drag handles", False)
@@ -110,7 +114,7 @@ class SpringPanel:
         with self.panel.lock:
             spring = self.panel.model.springs[self.number]
             body = (spring.body_a, spring.body_b)[j]
-            place = self.panel.scene.local(body, handle.position)
+            place = np.clip(self.panel.scene.local(body, handle.position), -self.far / 1000.0, self.far / 1000.0)
             self._change({("p_a", "p_b")[j]: tuple(float(x) for x in place)})
             self._values()
 
