@@ -81,11 +81,11 @@ class InfeasibleError(EquipoiseError):
     exit_code = 1
 
 
-def visible(text: str) -> str:
-    """The text with what a terminal would obey, or nobody would see, written out: ``\\x1b`` for the escape character."""
+def visible(text: str, kept: str = "\t") -> str:
+    """The text with what a terminal would obey, or nobody would see, written out: ``\\x1b``; what is `kept` stays."""
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() or c == "\t" else c.encode("unicode_escape").decode() for c in text)
+    return "".join(c if c.isprintable() or c in kept else c.encode("unicode_escape").decode() for c in text)
 
 
 def shortened(text: str, most: int = LONGEST) -> str:
