@@ -97,14 +97,14 @@ def _names(m: Mechanism) -> Iterator[Fault]:
         for i, item in enumerate(items):
             if not item.name:
                 yield Fault((kind, i, "name"), "must not be empty")
-            elif not _printable(item.name):
+            elif not printable(item.name):
                 yield Fault((kind, i, "name"), f"has a character that cannot be printed: {item.name!a}")
             elif kind == "bodies" and item.name == "world":
                 yield Fault((kind, i, "name"), "'world' is the fixed frame and cannot be a body")
             elif item.name in seen:
                 yield Fault((kind, i, "name"), f"duplicate name '{item.name}', first used by {kind}[{seen[item.name]}]")
             seen.setdefault(item.name, i)
-    if not _printable(m.name):
+    if not printable(m.name):
         yield Fault(("name",), f"has a character that cannot be printed: {m.name!a}")
     # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
     spherical = {f"{j.name}.{letter}" for j in m.joints if j.type == "spherical" for letter in "xyz"}
@@ -113,7 +113,7 @@ def _names(m: Mechanism) -> Iterator[Fault]:
             yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
 
 
-def _printable(name: str) -> bool:
+def printable(name: str) -> bool:
     """Whether a name has no control characters or line breaks: they would reach terminals and break XML."""
     return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
 

@@ -85,8 +85,8 @@ def parse(text: str, file: str) -> Located:
     """Parse YAML text; a key given twice is kept as a fault in the result, and its first value counts.
 
     Raises:
-        InputError: it is not YAML, has no or several documents, uses an alias, an anchor or a tag, nests too deep, or is
-            too long.
+        InputError: it is not YAML, has no or several documents, uses an alias, an anchor or a tag, nests too deep, or
+            is too long.
     """
     if len(text) > MAX_LENGTH:
         raise InputError(Fault((), f"has {len(text):,} characters, at most {MAX_LENGTH:,} are read", file=file))

@@ -48,7 +48,7 @@ def main() -> None:
         sys.exit(REFUSED)
     data = np.empty(mujoco.mj_sizeModel(model), np.uint8)
     mujoco.mj_saveModel(model, None, data)
-    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.write(data.tobytes())
 
 
 if __name__ == "__main__":

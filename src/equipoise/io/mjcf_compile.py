@@ -1,4 +1,4 @@
-"""Compiles MJCF with MuJoCo in a process of its own: a few letters can make the compiler work for hours and take gigabytes."""
+"""Compiles MJCF with MuJoCo in a process of its own: a few letters can make it work for hours and take gigabytes."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's names come from a compiled module that ships no type stubs)
