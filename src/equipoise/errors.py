@@ -8,6 +8,10 @@ from dataclasses import dataclass, replace
 from math import isfinite
 
 Path = tuple[str | int, ...]  # where in a file: ("joints", 2, "parent")
+SHOWN = 20  # faults of one input; the others are counted
+COUNTED = 200  # faults of one input that are looked for: each is compared with all names
+LONGEST = 500  # characters of one message and of one list of choices
+COMPARED = 200  # names that a misspelt one is compared with, those of its own length first
 
 
 class EquipoiseWarning(UserWarning):
@@ -42,11 +46,11 @@ class Fault:
 
     def __str__(self) -> str:
         place = ":".join(str(p) for p in (self.file, self.line, self.column) if p is not None)
-        text = ": ".join(part for part in (place, self.field, self.message) if part)
+        text = ": ".join(visible(shortened(part)) for part in (place, self.field, self.message) if part)
         if self.choices:
-            text += f" (valid: {', '.join(self.choices)})"
+            text += f" (valid: {visible(shortened(', '.join(self.choices)))})"
         if self.source is not None:
-            text += f"\n    {self.line} | {self.source.rstrip()}"
+            text += f"\n    {self.line} | {visible(self.source.rstrip())}"
         return text
 
     def at(self, file: str, line: int | None = None, column: int | None = None, source: str | None = None) -> Fault:
@@ -61,7 +65,11 @@ class InputError(EquipoiseError):
         if isinstance(faults, str):
             faults = Fault((), faults)
         self.faults: tuple[Fault, ...] = (faults,) if isinstance(faults, Fault) else tuple(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
+        lines = [str(fault) for fault in self.faults[:SHOWN]]
+        if len(self.faults) > SHOWN:
+            least = "at least " if len(self.faults) >= COUNTED else ""
+            lines.append(f"and {least}{len(self.faults) - SHOWN} more")
+        super().__init__("\n".join(lines))
 
 
 class UnsupportedError(EquipoiseError):
@@ -78,10 +86,24 @@ class InfeasibleError(EquipoiseError):
     exit_code = 1
 
 
+def visible(text: str, kept: str = "\t") -> str:
+    """The text with what a terminal would obey, or nobody would see, written out: ``\\x1b``; what is `kept` stays."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in kept else c.encode("unicode_escape").decode() for c in text)
+
+
+def shortened(text: str, most: int = LONGEST) -> str:
+    """The text, cut where it is longer than `most` characters."""
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
 def nearest(found: object, choices: Iterable[str]) -> str:
     """`'sholder'; did you mean 'shoulder'?` when one of the choices is close, else just the quoted text."""
-    close = difflib.get_close_matches(str(found), list(choices), n=1)
-    return f"'{found}'; did you mean '{close[0]}'?" if close else f"'{found}'"
+    text = shortened(str(found), 100)
+    near = sorted(choices, key=lambda choice: abs(len(choice) - len(text)))[:COMPARED]  # comparing is slow
+    close = difflib.get_close_matches(text, near, n=1)
+    return f"'{text}'; did you mean '{close[0]}'?" if close else f"'{text}'"
 
 
 def shorten(names: Sequence[str], most: int = 12) -> tuple[str, ...]:

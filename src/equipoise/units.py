@@ -28,8 +28,10 @@ SI_UNITS = {
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""
 
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\d\s+-][^+-]*|)\s*")
-_UNIT = re.compile(r"(?:[A-Za-zµ°%]+(?:\^[1-4]|\*\*[1-4])?|[*/ ().·²³])+")
+LONGEST = 200  # characters of a text with a unit; none that means something is half as long
+# possessive, so that no text is gone through twice: a hostile one would take for ever
+_NUMBER = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]{1,3}+)?+")
+_UNIT = re.compile(r"(?:[A-Za-zµ°%]++(?:\^[1-4]|\*\*[1-4])?+|[*/ ().·²³])++")
 
 
 @cache
@@ -69,10 +71,12 @@ def to_si(value: object, dimension: str) -> float:
 
 
 def _parse(text: str, unit: str, expected: str) -> float:
-    match = _QUANTITY.fullmatch(text)
-    if match is None or not (match[2] == "" or _UNIT.fullmatch(match[2])):
+    text = text.strip()
+    match = _NUMBER.match(text) if len(text) <= LONGEST else None
+    found = text[match.end() :].strip() if match else ""
+    if match is None or not (found == "" or _UNIT.fullmatch(found)):
         raise ValueError(f"{expected}, found {_show(text)}")
-    number, found = float(match[1]), match[2].strip()
+    number = float(match[0])
     if not found:
         return number
     if not unit:

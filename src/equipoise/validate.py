@@ -4,33 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from itertools import islice
 from math import isfinite
 from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
 
 from .coordinate import Coordinate, Slide
-from .errors import Fault, InputError, Path, at_least, finite, known, nearest, shorten
+from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, nearest, shorten
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 MAX_SAMPLES = 10_000_000
+MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
+"""What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
 
 def faults(mechanism: Mechanism) -> list[Fault]:
     """Everything that is wrong with a mechanism, as faults whose paths follow the mechanism file."""
-    return [
-        *_numbers(mechanism),
-        *_names(mechanism),
-        *_references(mechanism),
-        *_joints(mechanism),
-        *_tree(mechanism),
-        *_couplings(mechanism),
-        *_springs(mechanism),
-        *_loops(mechanism),
-        *_branch(mechanism),
-    ]
+    too_many = list(_sizes(mechanism))
+    if too_many:
+        return too_many
+    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch)
+    return list(islice((fault for check in checks for fault in check(mechanism)), COUNTED))
+
+
+def _sizes(m: Mechanism) -> Iterator[Fault]:
+    for kind, most in MOST.items():
+        if (count := len(getattr(m, kind))) > most:
+            yield Fault((kind,), f"at most {most} are worked with, found {count:,}")
 
 
 def whole_number(name: str, value: object, least: int, most: int | None = None) -> None:
@@ -76,14 +79,14 @@ def _names(m: Mechanism) -> Iterator[Fault]:
         for i, item in enumerate(items):
             if not item.name:
                 yield Fault((kind, i, "name"), "must not be empty")
-            elif not _printable(item.name):
+            elif not printable(item.name):
                 yield Fault((kind, i, "name"), f"has a character that cannot be printed: {item.name!a}")
             elif kind == "bodies" and item.name == "world":
                 yield Fault((kind, i, "name"), "'world' is the fixed frame and cannot be a body")
             elif item.name in seen:
                 yield Fault((kind, i, "name"), f"duplicate name '{item.name}', first used by {kind}[{seen[item.name]}]")
             seen.setdefault(item.name, i)
-    if not _printable(m.name):
+    if not printable(m.name):
         yield Fault(("name",), f"has a character that cannot be printed: {m.name!a}")
     # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
     spherical = {name for j in m.joints if j.type == "spherical" for name in j.coordinates}
@@ -92,7 +95,7 @@ def _names(m: Mechanism) -> Iterator[Fault]:
             yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
 
 
-def _printable(name: str) -> bool:
+def printable(name: str) -> bool:
     """Whether a name has no control characters or line breaks: they would reach terminals and break XML."""
     return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
 

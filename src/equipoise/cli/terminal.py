@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import EquipoiseWarning
+from ..errors import EquipoiseWarning, visible
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
@@ -70,4 +70,4 @@ def print_json(value: Any) -> None:
 
 
 def say(text: str) -> None:
-    typer.echo(text, err=True)
+    typer.echo(visible(text, "\t\n"), err=True)

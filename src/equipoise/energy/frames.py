@@ -21,6 +21,7 @@ from ..rotation import harmonics
 from .series import Series
 
 MAX_TERMS = 200_000
+MAX_KEYS = 16_000_000  # frequencies and degrees of all terms: 64 MB
 MAX_FREQUENCY = 2**31 - 1  # a sum of frequencies has to fit the keys of a `Series`
 MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
 
@@ -36,9 +37,10 @@ class Frames:
         if isinstance(tree, Linkage):
             raise NoFourierForm("it has loops: its energy is no finite sum over the independent coordinates")
         self.tree = tree
-        self.max_terms = max_terms
+        self.max_terms = min(max_terms, MAX_KEYS // max(1, 2 * tree.n))
         self.denominators = np.array([_denominator(column) for column in tree.C[tree.rotates].T], int)
         self._chains: dict[tuple[int, int], Series] = {}
+        self._paths: dict[int, list[int]] = {}
 
     def stretch(self, body_a: int, body_b: int) -> dict[int, Series]:
         """Z of THEORY section 1 as ``{X: V_X}``, V_X 3 x 7: the stretch is ``sum_X R_WX V_X z``, z = [p_a; 1; p_b]."""
@@ -151,16 +153,18 @@ class Frames:
         above_x, above_y = self._bases(X), self._bases(Y)
         top = next(body for body in above_x if body in above_y)
         left, right = self._chain(top, X), self._chain(top, Y)
+        if top == X:
+            return right
         self._guard(len(left) * len(right) // 3)
         product = (left.T @ right).collected() if len(left) > 1 else left.T @ right
         self._guard(len(product))
         return product
 
     def _bases(self, body: int) -> list[int]:
-        path = [body]
-        while path[-1]:
-            path.append(self.tree.link_of[path[-1]].base)
-        return path
+        """The body and those that its orientation hangs on, down to the world."""
+        if body not in self._paths:
+            self._paths[body] = [body, *(self._bases(self.tree.link_of[body].base) if body else ())]
+        return self._paths[body]
 
 
 def _nonzero(parts: dict[int, list[Series]]) -> dict[int, Series]:

@@ -67,6 +67,9 @@ class Between:
                     for k in range(first, first + int(model.tendon_num[a]))
                 ]
                 (dependent, ratio), *others = terms
+                if not ratio:
+                    self.faults.append(f"equality '{name}' holds a tendon whose first joint has the coefficient 0")
+                    continue
                 length = float(c[0]) + float(model.tendon_length0[a])
                 rest = tuple((other, -coef / ratio) for other, coef in others)
                 found.append(Coupling(dependent, rest, length / ratio))

@@ -31,8 +31,10 @@ from ..arrays import Array
 from ..errors import Fault, InputError
 from ..mechanism import WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
 from ..rotation import about, ball_angles, from_quaternion, to_rpy
-from . import files, mjcf
+from ..validate import MOST
+from . import mjcf
 from .mjcf_between import Between, Places, vec3
+from .mjcf_compile import compiled
 from .text import Names
 
 MASSLESS = 1e-12  # [kg] what the compiler is told to put in the place of nothing
@@ -47,19 +49,16 @@ def read(path: str | os.PathLike[str]) -> Mechanism:
             acts on statics and cannot be expressed; everything of that kind is named at once.
     """
     name = os.fspath(path)
-    files.read_text(name)  # a missing, empty or huge file is said as of every other kind
-    try:
-        import mujoco
-    except ImportError:
-        message = "an MJCF file is read through MuJoCo, which comes with: pip install 'equipoise[sim]'"
-        raise InputError(Fault((), message, file=name)) from None
-    try:
-        model = mujoco.MjModel.from_xml_path(name)
-    except ValueError as error:
-        reason = " ".join(str(error).split()).removeprefix("Error: ")
-        raise InputError(Fault((), f"MuJoCo does not compile it: {reason}", file=name)) from None
+    model = compiled(name)
+    import mujoco
+
+    if model.nbody > MOST["bodies"]:
+        raise InputError(Fault((), f"has {model.nbody - 1:,} bodies, at most {MOST['bodies']} are read", file=name))
     reader = _Reader(mujoco, model)
-    mechanism = reader.mechanism()
+    try:
+        mechanism = reader.mechanism()
+    except InputError as error:
+        raise InputError([fault.at(name) for fault in error.faults]) from None
     if reader.faults:
         raise InputError([Fault((), problem, file=name) for problem in reader.faults])
     return mechanism

@@ -6,12 +6,13 @@ What one item alone can tell is checked here; what needs the whole mechanism is 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
 from ..elements import KINDS, Element, Spring, TorsionSpring
-from ..errors import Fault, Path, nearest
+from ..errors import COUNTED, Fault, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
     Angle,
@@ -251,7 +252,7 @@ def validate(data: object) -> tuple[MechanismFile | None, list[tuple[Fault, bool
     try:
         return MechanismFile.model_validate(data), []
     except ValidationError as error:
-        return None, list(_faults(error, data))
+        return None, list(islice(_faults(error, data), COUNTED))
 
 
 def _faults(error: ValidationError, data: object) -> Iterator[tuple[Fault, bool]]:

@@ -125,6 +125,9 @@ class _Reader:
         except InputError as error:
             places = {"bodies": links, "joints": joints, "couplings": couplings}
             for fault in error.faults:
+                if len(fault.path) < 2:  # of the whole mechanism
+                    self._fault(root, fault.path, fault.message)
+                    continue
                 kind, i, *rest = fault.path
                 element = places[str(kind)][int(i)][1]
                 path = (_label(element), *(_FIELDS.get(str(key), key) for key in rest))

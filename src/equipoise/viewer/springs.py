@@ -14,6 +14,7 @@ from .scene import Scene
 
 MOST = 3.0  # the stiffness slider goes to this many times the present one
 SAME = 5e-5  # [m] a number field shows tenths of a millimetre
+FAR = 10.0  # sizes of the mechanism: attachments are this near their bodies' origins, or as the file has them
 
 
 class SpringPanel:
@@ -67,6 +68,8 @@ class SpringPanel:
         self.choice.on_update(lambda _: self._chosen())
         self.here = gui.add_checkbox("this one is on", self.model.on[0])
         self.here.on_update(lambda _: self._switched())
+        points = [x for spring in springs for _, p in spring.ends for x in p]
+        self.far = 1000.0 * max(FAR * self.scene.size, 2 * float(np.abs(points).max(initial=0.0)))
         self.widgets = [self.choice, self.here]
         self._numbers()
 
@@ -79,7 +82,8 @@ class SpringPanel:
         with self.folder:
             self.sliders = [gui.add_slider(knob.label, 1.0, 2.0, 0.1, 1.0) for knob in spring.knobs]
             labels = ("a [mm]", "b [mm]") if spring.ends else ()
-            self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), step=1.0) for label in labels]
+            ends = {"min": (-self.far,) * 3, "max": (self.far,) * 3, "step": 1.0}
+            self.points = [gui.add_vector3(label, (0.0, 0.0, 0.0), **ends) for label in labels]
             for widget in (*self.sliders, *self.points):
                 widget.on_update(lambda _: self._edited())
             self.handles, self.drag = [], None
@@ -151,7 +155,7 @@ class SpringPanel:
         with self.lock:
             spring = self.model.springs[self.number]
             body, _ = spring.ends[j]
-            place = self.scene.local(body, handle.position)
+            place = np.clip(self.scene.local(body, handle.position), -self.far / 1000.0, self.far / 1000.0)
             self._change({("p_a", "p_b")[j]: tuple(float(x) for x in place)})
             self._values()
 
