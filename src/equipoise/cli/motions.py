@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
-from . import options
+from ..units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..kinematics import Tree
@@ -70,17 +70,16 @@ def _move(text: str, tree: Tree) -> Move:
     name = parts[0].strip()
     if name not in tree.coordinates:
         raise InputError(Fault(("--move",), f"no coordinate {nearest(name, tree.coordinates)}", tree.coordinates))
-    start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
+    start, end = (quantity(part, "time", "--move") for part in parts[1:3])
     if end <= start:
         raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
     dimension = tree.coordinates[tree.coordinates.index(name)].dimension
-    first, last = (options.quantity(part, dimension, "--move") for part in parts[3:])
+    first, last = (quantity(part, dimension, "--move") for part in parts[3:])
     return Move(name, start, end, first, last)
 
 
 def _table(path: Path, tree: Tree) -> Motion:
     from ..io.files import read_text
-    from ..units import to_si
 
     lines = csv.reader(read_text(path).splitlines(), skipinitialspace=True)
     rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]

@@ -14,6 +14,7 @@ from math import lcm
 import numpy as np
 
 from ..arrays import Array
+from ..errors import UnsupportedError
 from ..kinematics.linkage import Linkage
 from ..kinematics.tree import Link, Tree
 from ..rotation import harmonics
@@ -24,7 +25,7 @@ MAX_FREQUENCY = 2**31 - 1  # a sum of frequencies has to fit the keys of a `Seri
 MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
 
 
-class NoFourierForm(Exception):
+class NoFourierForm(UnsupportedError):
     """The energy has no finite Fourier form, or one that is too long; the message says which."""
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
+from ..errors import InputError
 from ..kinematics.tree import Tree
 from ..mechanism import Mechanism
 
@@ -104,7 +105,7 @@ class Potential:
     def _poses(self, q: ArrayLike) -> Array:
         q = np.atleast_2d(np.asarray(q, float))
         if q.shape[1:] != (self.tree.n,):
-            raise ValueError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
+            raise InputError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
         return q
 
     def _chunk(self, q: Array) -> State:

@@ -6,11 +6,12 @@ What one item alone can tell is checked here; what needs the whole mechanism is 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
-from ..errors import Fault, Path, nearest
+from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
     Angle,
@@ -38,7 +39,7 @@ SCHEMA = 1
 def _schema(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value == SCHEMA:
         return SCHEMA
-    raise ValueError(f"this version reads schema {SCHEMA}, found {show(value)}")
+    raise InputError(f"this version reads schema {SCHEMA}, found {show(value)}")
 
 
 class Item(BaseModel):
@@ -79,7 +80,7 @@ class JointItem(Item):
     def _axis(cls, value: object, info: ValidationInfo) -> object:
         joint_type = info.data.get("type")
         if value is None and joint_type in SINGLE:
-            raise ValueError(f"missing: a {joint_type} joint needs it")
+            raise InputError(f"missing: a {joint_type} joint needs it")
         return (1.0, 0.0, 0.0) if value is None else value
 
     _range = field_validator("range", mode="before")(limits)
@@ -227,11 +228,8 @@ def _plain(detail: Any) -> Fault:
     if kind == "missing":
         return Fault(path, f"missing: {_model(path[:-1]).kind} needs it")
     if kind == "value_error":
-        return Fault(path, str(context["error"]))
-    if kind == "choice":
-        return Fault(path, context["message"], context["choices"])
-    if kind == "element":
-        return Fault((*path, context["index"]), context["message"])
+        (fault,) = context["error"].faults
+        return replace(fault, path=(*path, *fault.path))
     if kind == "list_type":
         return Fault(path, f"expected a list, found {show(detail['input'])}")
     if kind == "dict_type":
