@@ -56,9 +56,8 @@ def test_people_read_degrees_and_millimetres() -> None:
 
 @pytest.mark.parametrize("same", [copy.deepcopy, lambda c: pickle.loads(pickle.dumps(c))])
 def test_a_copy_keeps_its_units_and_nothing_can_change_them(same) -> None:
-    found = same(Slide("lift"))
-    assert found == "lift"
-    assert (type(found), found.unit) == (Slide, "m")
+    found: Slide = same(Slide("lift"))
+    assert (str(found), type(found), found.unit) == ("lift", Slide, "m")
     with pytest.raises(AttributeError):
         found.unit = "rad"
 

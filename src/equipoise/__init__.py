@@ -10,8 +10,10 @@ The names below are the whole public interface::
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from . import notebook
 from ._version import __version__
 from .elements import Spring, TorsionSpring
 from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
@@ -49,12 +51,12 @@ _LAZY = {
     "design": "synthesis",
 }
 
+notebook.supplied_by(lambda: import_module(f"{__name__}.report.notebook"))
+
 
 def __getattr__(name: str) -> Any:
     # what computes is imported on first use, so that `import equipoise` stays quick
     if name in _LAZY:
-        from importlib import import_module
-
         return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'equipoise' has no attribute '{name}'")
 

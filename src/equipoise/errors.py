@@ -1,4 +1,4 @@
-"""One error family. Every error a user can cause is an `EquipoiseError` with a message that says what to change."""
+"""One error family: all that this package raises is an `EquipoiseError` whose message says what to change."""
 
 from __future__ import annotations
 
@@ -58,8 +58,11 @@ class Fault:
         return replace(self, file=file, line=line, column=column, source=source)
 
 
-class InputError(EquipoiseError):
-    """A file, an option or a mechanism that cannot be used. `faults` lists everything that is wrong with it."""
+class InputError(EquipoiseError, ValueError):
+    """A file, an option, an array or a mechanism that cannot be used. `faults` lists everything that is wrong with it.
+
+    It is a `ValueError` too, which is what Python calls a bad argument.
+    """
 
     def __init__(self, faults: Iterable[Fault] | Fault | str) -> None:
         if isinstance(faults, str):

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import InputError
+from ..units import share
 from . import terminal
 from .app import File, Json, app
 
@@ -119,7 +120,7 @@ def design(
     given = {name: value for name, value in given.items() if terminal.typed(context, asked.get(name, name))}
     if method in METHODS:
         given |= options.settings(set_ or [], METHODS[method].parameters)
-    wound = {"stiffness_factor": stiffness_factor, "preload": options.share(preload, "--preload")}
+    wound = {"stiffness_factor": stiffness_factor, "preload": share(preload, "--preload")}
     lengths = options.free_lengths(free_length or [])
     room = None if clearance is None else options.length(clearance, "--clearance")
     thick = None if diameter is None else options.positive_length(diameter, "--diameter")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
-from . import options
+from ..units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..kinematics import Tree
@@ -68,11 +68,11 @@ def _move(text: str, tree: Tree) -> Move:
     name = parts[0].strip()
     if name not in tree.coordinates:
         raise InputError(Fault(("--move",), f"no coordinate {nearest(name, tree.coordinates)}", tree.coordinates))
-    start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
+    start, end = (quantity(part, "time", "--move") for part in parts[1:3])
     if end <= start:
         raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
     dimension = tree.coordinates[tree.coordinates.index(name)].dimension
-    first, last = (options.quantity(part, dimension, "--move") for part in parts[3:])
+    first, last = (quantity(part, dimension, "--move") for part in parts[3:])
     if unusable(np.array([start, end]), np.array([first, last])) is not None:
         raise InputError(Fault(("--move",), f"found '{text}': {USABLE}"))
     return Move(name, start, end, first, last)
@@ -81,7 +81,6 @@ def _move(text: str, tree: Tree) -> Move:
 def _table(path: Path, tree: Tree) -> Motion:
     from ..io.tables import csv_rows, heading
     from ..kinematics.motion import USABLE, unusable
-    from ..units import to_si
 
     def fault(line: int, message: str, choices: tuple[str, ...] = ()) -> InputError:
         return InputError(Fault((), message, choices, file=str(path), line=line))

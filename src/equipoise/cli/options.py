@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
-from ..units import to_si
+from ..units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
@@ -31,18 +31,6 @@ def positive_length(text: str, option: str) -> float:
     if value <= 0:
         raise InputError(Fault((option,), f"must be more than 0 m, found {text}"))
     return value
-
-
-def quantity(text: str, dimension: str, option: str) -> float:
-    """A number in the SI unit of `dimension`, or one with its unit.
-
-    Raises:
-        InputError: it has another dimension, or is no number; the message names the option.
-    """
-    try:
-        return to_si(text, dimension)
-    except ValueError as error:
-        raise InputError(Fault((option,), str(error))) from None
 
 
 def payload(mechanism: Mechanism, masses: str, body: str, place: str) -> Payload:
@@ -111,21 +99,6 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
-
-
-def share(text: str, option: str) -> float:
-    """A share from 0 to 1 such as ``0.02`` or ``2%``.
-
-    Raises:
-        InputError: it is not; the message names the option.
-    """
-    try:
-        value = _share(text)
-    except ValueError:
-        value = inf
-    if not 0 <= value <= 1:
-        raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
-    return value
 
 
 def _share(text: str) -> float:

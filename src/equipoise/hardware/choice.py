@@ -22,7 +22,7 @@ from ..errors import Fault, InfeasibleError, InputError, nearest
 from ..mechanism import Mechanism
 from ..progress import Progress, silent
 from .movable import Movable, Travel
-from .relaxation import Pull, Relaxation
+from .relaxation import OutOfTime, Pull, Relaxation
 from .stock import Catalogue, Stock
 
 Goal = Literal["mass", "price"]
@@ -114,7 +114,7 @@ def choose(
         left = seconds - (monotonic() - start)
         try:
             found = relaxation.solve(seconds=left) if left > 0 else None
-        except TimeoutError:
+        except OutOfTime:
             left = 0.0
             found = None
         if found is None:

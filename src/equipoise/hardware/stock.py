@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from io import StringIO
 from math import isfinite
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any
 from ..errors import Fault, InputError, nearest
 from ..io.files import write_bytes, write_text
 from ..io.tables import csv_rows, heading, parquet_bytes, parquet_columns
-from ..units import SI_UNITS, to_si
+from ..units import SI_UNITS, quantity
 from ..validate import printable
 
 COLUMNS = {
@@ -83,8 +83,8 @@ def read_catalogue(path: str | Path, columns: Mapping[str, str] | None = None) -
         for number, row in enumerate(rows, start=2):
             try:
                 found.append(_stock(row, places))
-            except ValueError as error:
-                faults.append(Fault((), str(error), line=number))
+            except InputError as error:
+                faults += [replace(fault, line=number) for fault in error.faults]
         seen: set[str] = set()
         for number, one in enumerate(found, start=2):
             if one.part in seen:
@@ -146,9 +146,9 @@ def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Place
         place, unit = bare[wanted]
         unit = override or unit
         try:
-            factor = to_si(f"1 {unit}", dimension) if unit and dimension != "text" else 1.0
-        except ValueError as error:
-            faults.append(Fault((name,), str(error)))
+            factor = quantity(f"1 {unit}", dimension, name) if unit and dimension != "text" else 1.0
+        except InputError as error:
+            faults += error.faults
             continue
         places[name] = place, factor
     return places, faults
@@ -163,19 +163,18 @@ def _stock(row: list[Any], places: Mapping[str, Place]) -> Stock:
         else:
             values[name] = _number(name, cell) * factor
     if not values["part"]:
-        raise ValueError("part: is missing")
+        raise InputError(Fault(("part",), "is missing"))
     if not printable(values["part"]):
-        raise ValueError(f"part: has a character that cannot be printed: {values['part']!a}")
+        raise InputError(Fault(("part",), f"has a character that cannot be printed: {values['part']!a}"))
     if values["kind"] not in KINDS:
-        raise ValueError(f"kind: unknown {nearest(values['kind'], KINDS)} (valid: {', '.join(KINDS)})")
+        raise InputError(Fault(("kind",), f"unknown {nearest(values['kind'], KINDS)}", KINDS))
     for name in (f.name for f in fields(Stock) if f.name in values and f.name not in ("part", "kind")):
         least = 0.0 if name in OPTIONAL else 1e-12
         if not values[name] >= least:
-            raise ValueError(
-                f"{name}: must be {'at least' if name in OPTIONAL else 'more than'} 0, found {values[name]:g}"
-            )
+            limit = "at least" if name in OPTIONAL else "more than"
+            raise InputError(Fault((name,), f"must be {limit} 0, found {values[name]:g}"))
     if values.get("initial_tension", 0.0) >= values["max_force"]:
-        raise ValueError("initial_tension: must be less than max_force")
+        raise InputError(Fault(("initial_tension",), "must be less than max_force"))
     return Stock(**values)
 
 
@@ -183,7 +182,7 @@ def _number(name: str, cell: Any) -> float:
     try:
         value = float(cell)
     except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected a number, found '{cell}'") from None
+        raise InputError(Fault((name,), f"expected a number, found '{cell}'")) from None
     if not isfinite(value):
-        raise ValueError(f"{name}: expected a finite number, found '{cell}'")
+        raise InputError(Fault((name,), f"expected a finite number, found '{cell}'"))
     return value

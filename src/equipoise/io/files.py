@@ -76,9 +76,9 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
         InputError: the folder is missing or cannot be written to, the path is a folder, or the disk is full.
     """
     name = os.fspath(path)
+    if os.path.isdir(name):
+        raise _fault(name, "cannot be written: it is a folder")
     try:
-        if os.path.isdir(name):
-            raise IsADirectoryError
         if _special(name):
             Path(name).write_bytes(data)
         else:

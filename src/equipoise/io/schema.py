@@ -6,13 +6,14 @@ What one item alone can tell is checked here; what needs the whole mechanism is 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
 from ..elements import KINDS, Element, Spring, TorsionSpring
-from ..errors import COUNTED, Fault, Path, nearest
+from ..errors import COUNTED, Fault, InputError, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
     Angle,
@@ -41,7 +42,7 @@ SCHEMA = 1
 def _schema(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value == SCHEMA:
         return SCHEMA
-    raise ValueError(f"this version reads schema {SCHEMA}, found {show(value)}")
+    raise InputError(f"this version reads schema {SCHEMA}, found {show(value)}")
 
 
 class Item(BaseModel):
@@ -82,7 +83,7 @@ class JointItem(Item):
     def _axis(cls, value: object, info: ValidationInfo) -> object:
         joint_type = info.data.get("type")
         if value is None and joint_type in SINGLE:
-            raise ValueError(f"missing: a {joint_type} joint needs it")
+            raise InputError(f"missing: a {joint_type} joint needs it")
         return (1.0, 0.0, 0.0) if value is None else value
 
     _range = field_validator("range", mode="before")(limits)
@@ -158,7 +159,7 @@ class TorsionItem(Item):
     @classmethod
     def _either(cls, value: dict[str, float], info: ValidationInfo) -> dict[str, float]:
         if ("joint" in info.data and info.data["joint"] is None) == (not value):
-            raise ValueError("give 'joint', or 'joints' with a ratio each, and not both")
+            raise InputError("give 'joint', or 'joints' with a ratio each, and not both")
         return value
 
     def element(self) -> Element:
@@ -279,11 +280,8 @@ def _plain(detail: Any, data: Any) -> Fault:
     if kind == "missing":
         return Fault(path, f"missing: {_model(path[:-1], data).noun} needs it")
     if kind == "value_error":
-        return Fault(path, str(context["error"]))
-    if kind == "choice":
-        return Fault(path, context["message"], context["choices"])
-    if kind == "element":
-        return Fault((*path, context["index"]), context["message"])
+        (fault,) = context["error"].faults
+        return replace(fault, path=(*path, *fault.path))
     if kind == "list_type":
         return Fault(path, f"expected a list, found {show(detail['input'])}")
     if kind == "dict_type":

@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 
 from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from ..units import to_si
+from ..units import quantity
 from . import dh, models
 from .emit import to_text
 from .fields import DIMENSION_OF
@@ -114,9 +114,9 @@ def _tree(file: MechanismFile, located: Located) -> tuple[_Tree, list[Fault]]:
         offset = 0.0
         if item.joint in types and types[item.joint] in DIMENSION_OF:  # if not, that is the fault
             try:
-                offset = to_si(item.offset, DIMENSION_OF[types[item.joint]])
-            except ValueError as error:
-                faults.append(Fault(("couplings", i, "offset"), str(error)))
+                offset = quantity(item.offset, DIMENSION_OF[types[item.joint]], "couplings", i, "offset")
+            except InputError as error:
+                faults += error.faults
         tree.couplings.append((Coupling(item.joint, tuple(item.terms.items()), offset), _Origin(("couplings", i))))
     return tree, faults
 
@@ -128,11 +128,11 @@ def _assembly(file: MechanismFile, tree: _Tree) -> tuple[dict[str, float], list[
     faults: list[Fault] = []
     for name, value in file.assembly.items():
         try:
-            values[name] = to_si(value, DIMENSION_OF.get(types.get(name, ""), "angle"))
-        except ValueError as error:
+            values[name] = quantity(value, DIMENSION_OF.get(types.get(name, ""), "angle"), "assembly", name)
+        except InputError as error:
             values[name] = 0.0
             if name in types or "." in name:  # if not, that is the fault
-                faults.append(Fault(("assembly", name), str(error)))
+                faults += error.faults
     return values, faults
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, Booleans, Integers
+from ..errors import InputError
 from ..mechanism import SINGLE, Joint, Mechanism
 from ..rotation import about, from_rpy, harmonics
 
@@ -164,11 +165,11 @@ class Tree:
         """Configurations as (N, n), from (N, n) or (n,) for one.
 
         Raises:
-            ValueError: another shape.
+            InputError: another shape.
         """
         q = np.atleast_2d(np.asarray(q, float))
         if q.shape[1:] != (self.n,):
-            raise ValueError(f"q has shape {q.shape}, expected (N, {self.n}) for {self.coordinates}")
+            raise InputError(f"q has shape {q.shape}, expected (N, {self.n}) for {self.coordinates}")
         return q
 
     def values(self, q: Array) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ...errors import UnsupportedError
 from ...kinematics import Tree
 from ...kinematics.groups import Place, places
 from ...kinematics.linkage import Linkage
@@ -24,7 +25,7 @@ Y = (0.0, 1.0, 0.0)
 SMALL = 1e-9  # relative: what counts as nothing
 
 
-class NotDelta(Exception):
+class NotDelta(UnsupportedError):
     """The mechanism is no DELTA robot that the method covers; the message says why."""
 
 
