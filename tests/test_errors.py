@@ -24,6 +24,7 @@ SOURCE = Path(eq.__file__).parent
 PROTOCOLS = {
     ("__init__.py", AttributeError),  # what Python asks of a module's `__getattr__`
     ("cli", typer.Exit),  # an exit code, not an error
+    ("cli", KeyboardInterrupt),  # what typer has swallowed
 }
 
 
@@ -51,6 +52,8 @@ def strangers() -> Iterator[str]:
             what = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
             if isinstance(node.exc, ast.Call) and ast.unparse(what).rpartition(".")[2] in made:
                 continue
+            if isinstance(what, ast.Attribute) and what.attr == "__context__":
+                continue  # passes on what came too
             known = {**vars(errors), **vars(importlib.import_module(name))}  # some import them where they need them
             kind = eval(ast.unparse(what), known)
             if not issubclass(kind, EquipoiseError) and not {(inside.parts[0], kind)} & PROTOCOLS:

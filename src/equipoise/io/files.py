@@ -32,6 +32,8 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
             if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
                 raise _fault(name, "is a pipe or a device, not a file: save what it gives to a file first")
             data = stream.read(MAX_BYTES + 1)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise _fault(name, f"cannot be read: {_reason(error)}") from error
     if len(data) > MAX_BYTES:
