@@ -104,7 +104,7 @@ def mechanisms(draw: st.DrawFn, most_bodies: int = 5) -> Mechanism:
         springs=tuple(springs),
         masses=tuple(points),
         gravity=draw(vectors),
-        workspace=Workspace(draw(st.integers(1, 10_000_000))),
+        workspace=Workspace(draw(st.integers(1, 1_000_000))),
         provenance=draw(st.dictionaries(texts, plain, max_size=3)),
     )
 

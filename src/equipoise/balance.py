@@ -24,7 +24,7 @@ from .errors import InputError, NoFourierForm
 from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
 from .notebook import Shown
-from .validate import MAX_SAMPLES, whole_number
+from .validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
 
@@ -186,7 +186,8 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     """
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
-    whole_number("samples", samples, 1, MAX_SAMPLES)
+    held = 2 * (3 * tree.n + 2 * len(mechanism.springs) + 6)  # numbers for each sample
+    whole_number("samples", samples, 1, min(MAX_SAMPLES, MAX_NUMBERS // held))
     whole_number("seed", seed, 0)
     q = sample(tree, samples, seed)
     potential = Potential(mechanism)

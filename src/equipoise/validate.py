@@ -16,7 +16,8 @@ from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, n
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
-MAX_SAMPLES = 10_000_000
+MAX_SAMPLES = 1_000_000
+MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
 MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
 """What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 

@@ -13,10 +13,11 @@ from ..energy.peak import climb
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
-from ..validate import MAX_SAMPLES, whole_number
+from ..validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from .pairs import Pairs
 
 TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
+NUMBERS = 40  # that are held for each pair and sample
 
 
 @dataclass(frozen=True)
@@ -69,9 +70,10 @@ def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0
         raise InputError(f"mechanism '{mechanism.name}' has no springs")
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
-    whole_number("samples", samples, 1, MAX_SAMPLES)
-    q = sample(tree, samples, seed)
     pairs = Pairs(mechanism)
+    held = NUMBERS * (len(pairs.names) + len(mechanism.springs) + 1)
+    whole_number("samples", samples, 1, max(1, min(MAX_SAMPLES, MAX_NUMBERS // held)))
+    q = sample(tree, samples, seed)
     least, where = climb(tree, lambda x: -pairs.distances(tree.poses(x)), q, seed)
     gaps = [Gap(*name, float(-d), at) for name, d, at in zip(pairs.names, least, where, strict=True)]
     return Clearance(tuple(sorted(gaps, key=lambda gap: gap.distance)), tuple(_lines(mechanism, q)))

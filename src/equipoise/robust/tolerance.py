@@ -16,10 +16,11 @@ from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
-from ..validate import MAX_SAMPLES, whole_number
+from ..validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from .scatter import Parameter, Scatter
 from .torque_map import TorqueMap
 
+MOST = 1_000_000_000  # builds times poses: some minutes
 CHUNK_ENTRIES = 1_500_000  # torques held at a time: they stay in the cache
 PERCENTILES = (5, 50, 95, 99)
 
@@ -131,7 +132,7 @@ def tolerance(
         UnsupportedError: lengths scatter and the mechanism has loops.
     """
     whole_number("builds", builds, 2, MAX_SAMPLES)
-    whole_number("poses", poses, 1, MAX_SAMPLES)
+    whole_number("poses", poses, 1, min(MAX_SAMPLES, MOST // builds, MAX_NUMBERS // _numbers(mechanism)))
     whole_number("seed", seed, 0)
     tree = Tree.of(mechanism)
     if not tree.n:
@@ -207,3 +208,9 @@ def _columns(values: Array) -> list[dict[str, float]]:
     statistics.pop("max", None)
     statistics["min"] = values.min(axis=0).tolist()
     return [{name: row[i] for name, row in statistics.items()} for i in range(values.shape[1])]
+
+
+def _numbers(mechanism: Mechanism) -> int:
+    """Derivatives that are held for each pose, about: every coordinate's torque by everything that may be off."""
+    off = 7 * len(mechanism.springs) + 4 * (len(mechanism.bodies) + len(mechanism.masses)) + 3 * len(mechanism.joints)
+    return max(1, len(mechanism.coordinates) * off)

@@ -21,6 +21,7 @@ from ..progress import Progress, silent
 from ..validate import whole_number
 from .engine import Engine, Settings
 
+MAX_POSES = 10_000  # each is a simulation
 LOOKS = 100  # times that the drift is read during a run
 SECONDS = (0.01, 3600.0)  # of a run
 SOFT = 0.01  # share of its stiffness that the soft spring lacks
@@ -148,7 +149,7 @@ def release(
         UnsupportedError: MJCF cannot express the mechanism.
         EngineError: the simulation diverged.
     """
-    whole_number("poses", poses, 1)
+    whole_number("poses", poses, 1, MAX_POSES)
     whole_number("seed", seed, 0)
     if not SECONDS[0] <= seconds <= SECONDS[1]:
         raise InputError(Fault(("seconds",), f"must be between {SECONDS[0]:g} and {SECONDS[1]:g} s, found {seconds:g}"))
