@@ -41,7 +41,7 @@ OPTIONS = {
     "layout": "design lee2014_table5a.yaml --method planar --set layout=13,14,24",
     "ground": "design lin2010_arm.yaml --method no-auxiliary --set layout=ground",
     "payload": "design bevel_shoulder.yaml --method bevel --set payload=0,1",
-    "real": "design lin2010_arm.yaml --method pseudobase --set real=yes",
+    "real": "design lee_chen_arm.yaml --method pseudobase --set real=yes",
     "approximate": "design delta.yaml --method delta --set variant=optimum",
 }
 QUICK_OPTIONS = {"front", "free-length", "payload"}
