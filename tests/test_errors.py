@@ -24,7 +24,6 @@ SOURCE = Path(eq.__file__).parent
 PROTOCOLS = {
     ("__init__.py", AttributeError),  # what Python asks of a module's `__getattr__`
     ("cli", typer.Exit),  # an exit code, not an error
-    ("cli", KeyboardInterrupt),  # what typer has swallowed
 }
 
 
@@ -56,6 +55,8 @@ def strangers() -> Iterator[str]:
                 continue  # passes on what came too
             known = {**vars(errors), **vars(importlib.import_module(name))}  # some import them where they need them
             kind = eval(ast.unparse(what), known)
+            if not issubclass(kind, Exception):
+                continue  # a signal, not an error
             if not issubclass(kind, EquipoiseError) and not {(inside.parts[0], kind)} & PROTOCOLS:
                 yield f"{inside}:{node.lineno} raises {kind.__name__}"
 

@@ -6,6 +6,7 @@ symbols is handed to them, so that a kind is one file and everything else asks.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -53,7 +54,7 @@ class Knob(NamedTuple):
     high: float | None = None
 
 
-class Element:
+class Element(ABC):
     """A force element: frozen, with a `name` and the law and path of its `kind`.
 
     Attributes:
@@ -71,31 +72,31 @@ class Element:
     name: str
 
     @property
+    @abstractmethod
     def law(self) -> Law:
         """Force as a function of the path."""
-        raise NotImplementedError
 
     # physics
 
+    @abstractmethod
     def path(self, tree: Tree, poses: Poses) -> Array:
         """(N,) [m or rad]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def state(self, tree: Tree, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
         """Path (N,) [m or rad] and holding torque (N, n) [N m or N]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def series(self, frames: Frames) -> Series:
         """The energy [J] as a finite series; coefficients (T, 1, 1).
 
         Raises:
             NoFourierForm: it has none.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         """Path and energy [J] on the kernel's symbols; the pens get its torque."""
-        raise NotImplementedError
 
     def lumps(self) -> Iterator[tuple[str, float, Vec3]]:
         """Its own mass as (body, mass [kg], point in the body's frame [m])."""
@@ -103,17 +104,17 @@ class Element:
 
     # files
 
+    @abstractmethod
     def faults(self, mechanism: Mechanism) -> Iterator[Fault]:
         """What is wrong with it, paths from the element on; its name is checked with all others."""
-        raise NotImplementedError
 
+    @abstractmethod
     def to_dict(self, path: Range, force: Range) -> dict[str, Any]:
         """Its entry in ``check --json``, with the least and greatest path [m or rad] and force [N or N m]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def mjcf(self) -> tuple[str, dict[str, Iterable[float]], list[tuple[str, dict[str, str | float]]]]:
         """A tendon of MJCF: its tag, its numbers, and what it runs along (tag and attributes)."""
-        raise NotImplementedError
 
     # pictures and words
 
@@ -127,29 +128,29 @@ class Element:
         return self.ends
 
     @property
+    @abstractmethod
     def where(self) -> str:
         """What it acts on, for a legend."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def between(self) -> str:
         """The same within a sentence."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def strength(self) -> tuple[float, str]:
         """The number that says how strong it is, and its unit."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def free(self) -> float:
         """The path at which it exerts nothing [m or rad]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def sentence(self, path: Range, force: Range) -> str:
         """One line for a terminal: what it is, where, and how it is used."""
-        raise NotImplementedError
 
+    @abstractmethod
     def scaled(self, factor: float) -> Element:
         """The same, its force times `factor`."""
-        raise NotImplementedError
