@@ -158,7 +158,7 @@ def test_bounds_of_small_sets_hold_for_the_designs_on_them():
         found = search.best(count)
         assert found.bound is not None
         assert found.value >= found.bound - 1e-9
-        every = itertools.combinations(range(len(search.gram.problem.pairs)), count)
+        every = itertools.combinations(range(len(search.gram.blocks)), count)
         assert found.bound == pytest.approx(min(search.bound(pairs) for pairs in every))
 
 

@@ -81,7 +81,7 @@ def design(
     )
     gram = _worth_solving(build(problem, progress))
     search = Search(gram, seed, progress)
-    bound = search.bound(tuple(range(len(gram.problem.pairs))))
+    bound = search.floor
     infeasible = None if bound < FEASIBLE else _infeasible(gram, bound)
     if exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
@@ -156,19 +156,22 @@ def _found(search: Search, springs: int | None, bound: float, every: bool) -> tu
 def _infeasible(gram: Gram, bound: float) -> Infeasible:
     problem = gram.problem
     far = least_rms(gram.enlarged(FAR)).value
-    present = {frozenset(pair) for pair in problem.pairs}
+    own = tuple(block.place for block in gram.blocks)
+    present = {frozenset(pair) for pair in own}
     mounts = Mounts.of(problem.mechanism)
     # a large mechanism has hundreds of other pairs: the nearest ones are tried
     missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
     missing = sorted(missing, key=mounts.apart)[:REMEDIES]
-    wider = problem.with_pairs([*problem.pairs, *missing])
+    wider = problem.with_pairs([*(pair for pair in problem.pairs if pair in own), *missing])
     if not gram.averaged:  # exact balance at a few hundred random poses is exact balance
         wider = replace(wider, samples=FEW)
-    wide, own = build(wider), list(range(len(problem.pairs)))
-    remedies = [p for i, p in enumerate(missing, len(own)) if least_rms(wide.on([*own, i])).value < FEASIBLE]
+    wide = build(wider)
+    number = {block.place: i for i, block in enumerate(wide.blocks)}
+    stay = [number[place] for place in own]
+    remedies = [p for p in missing if least_rms(wide.on([*stay, number[p]])).value < FEASIBLE]
     unit = gram.unbalanced
     far = far * unit if far >= FEASIBLE else 0.0
-    return Infeasible(problem.pairs, bound * unit, far, tuple(remedies), len(missing))
+    return Infeasible(own, bound * unit, far, tuple(remedies), len(missing))
 
 
 def over_all_turns(mechanism: Mechanism) -> Mechanism:

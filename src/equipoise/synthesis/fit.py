@@ -15,9 +15,9 @@ from ..arrays import Array
 from ..energy.potential import Potential
 from ..kinematics import Tree
 from ..mechanism import Mechanism
-from .gram import stretch
-from .polish import project
-from .problem import Problem, Region
+from .problem import Problem
+from .region import Region, project
+from .spring_block import at_ends, between, stretch
 
 WIDTH = 8  # unknowns of a spring: log stiffness, u_a, u_b in their regions' coordinates (as in `polish`), preload
 SHRUNK = (1.0, 0.5, 0.25)  # starts: one attachment of every spring drawn in by so much, stiffened by as much
@@ -132,7 +132,7 @@ class Fit:
         J = np.zeros((S, WIDTH, *torque.shape))
         slack, J_slack = np.zeros((S, len(torque))), np.zeros((S, WIDTH, len(torque)))
         for i in range(S):
-            z = np.array([*p[i, 0], 1.0, *p[i, 1]])
+            z = between(p[i])
             d, rate = self.Z[i] @ z, self.dZ[i] @ z  # (N, 3), (N, n, 3)
             length = np.maximum(np.linalg.norm(d, axis=1), 1e-9)
             power = np.einsum("ni,nji->nj", d, rate)
@@ -180,8 +180,9 @@ class Fit:
 
     @staticmethod
     def _by_u(by_z: Array, inner: Array) -> Array:
-        """(..., 7) derivatives by z -> (..., 6) by u_a and u_b."""
-        return np.concatenate([by_z[..., :3] @ inner[0], by_z[..., 4:] @ inner[1]], axis=-1)
+        """Derivatives by z -> (..., 6) by u_a and u_b."""
+        by_u = at_ends(by_z)[..., None, :] @ inner
+        return by_u.reshape(*by_z.shape[:-1], -1)
 
 
 def _diagonal(J: Array) -> Array:

@@ -17,52 +17,15 @@ from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
 from ..validate import MAX_SAMPLES, whole_number
+from .blocks import Block
 from .mounts import Mounts
+from .region import SHAPES, Region, Shape
+from .spring_block import SpringBlock
 
 Pair = tuple[str, str]
 Progress = Callable[[str, float], None]  # what is being done, and the share of it that is done
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
-Shape = Literal["ball", "box"]
-SHAPES: tuple[Shape, ...] = ("ball", "box")
-EXTREME = 1e6  # regions so much smaller or larger than the mechanism are beyond double precision
-
-
-@dataclass(frozen=True)
-class Region:
-    """Where a spring may be attached to a body: within `half` of `centre`, in the body's frame [m].
-
-    A ball of radius ``half[0]``, or a box of half sides `half`.
-    """
-
-    centre: tuple[float, float, float]
-    half: tuple[float, float, float]
-    shape: Shape = "ball"
-
-    @staticmethod
-    def ball(radius: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
-        """A ball around `centre` [m]."""
-        x, y, z = centre
-        return Region((x, y, z), (radius, radius, radius), "ball")
-
-    @staticmethod
-    def box(half: float | Iterable[float], centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
-        """A box around `centre`, +-`half` along each axis of the body [m]."""
-        hx, hy, hz = [float(half)] * 3 if isinstance(half, (int, float)) else half
-        x, y, z = centre
-        return Region((x, y, z), (hx, hy, hz), "box")
-
-    def times(self, factor: float) -> Region:
-        """The region enlarged about its centre."""
-        hx, hy, hz = (factor * h for h in self.half)
-        return replace(self, half=(hx, hy, hz))
-
-    @property
-    def lift(self) -> Array:
-        """(4, 4) maps the region's own coordinates [u; 1], u in the unit ball or box, to body coordinates [p; 1]."""
-        L = np.diag([*self.half, 1.0])
-        L[:3, 3] = self.centre
-        return L
 
 
 @dataclass(frozen=True)
@@ -146,7 +109,7 @@ class Problem:
         for name in dict.fromkeys(name for pair in pairs for name in pair):
             radius = mounts.default_radius(name) if self.radius is None else self.radius
             regions.setdefault(name, make(radius))
-            _sized(name, regions[name], mounts.reach)
+            regions[name].check(name, mounts.reach)
         return replace(self, pairs=pairs, regions=regions)
 
     @property
@@ -165,13 +128,10 @@ class Problem:
         counted = [self.joints is None or name in self.joints for name in Tree.of(self.mechanism).coordinates]
         return np.where(counted, every, 0.0)
 
-    def lift(self, pair: Pair) -> Array:
-        """(7, 7) maps a pair's own coordinates [u_a; 1; u_b] to z = [p_a; 1; p_b]."""
-        a, b = (self.regions[name].lift for name in pair)
-        L = np.zeros((7, 7))
-        L[:4, :4] = a
-        L[4:, 4:], L[4:, 3] = b[:3, :3], b[:3, 3]
-        return L
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        """The unknowns: the springs of each pair."""
+        return tuple(SpringBlock(a, b, self.regions[a], self.regions[b]) for a, b in self.pairs)
 
 
 def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
@@ -186,15 +146,6 @@ def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]
     if not found:
         raise InputError(Fault(("joints",), "no joint is named", coordinates))
     return tuple(dict.fromkeys(found))
-
-
-def _sized(name: str, region: Region, reach: float) -> None:
-    half = np.array(region.half)
-    if not (np.isfinite([*half, *region.centre]).all() and (half >= 0).all() and half.max() > 0):
-        raise InputError(Fault(("regions", name), f"its size must be more than 0 m, found {half.max():g}"))
-    if not reach / EXTREME <= half.max() <= reach * EXTREME:
-        limits = f"{reach / EXTREME:.1g} m and {reach * EXTREME:.1g} m"
-        raise InputError(Fault(("regions", name), f"its size must be between {limits}, found {half.max():g} m"))
 
 
 def _distinct(pairs: Iterable[Pair]) -> tuple[Pair, ...]:
