@@ -33,7 +33,7 @@ def by_cvxpy(compressed: gram.Gram) -> float:
             diagonal = [M[i, i] for i in range(first, first + 3)]
             limits += (
                 [sum(diagonal) <= M[3, 3]]
-                if problem.regions[name].shape == "ball"
+                if problem.attachments[name].shape == "ball"
                 else [d <= M[3, 3] for d in diagonal]
             )
     torque = cp.norm(cp.hstack([w + compressed.d, compressed.rest]))

@@ -16,7 +16,7 @@ from equipoise.synthesis.problem import Problem, Region
 
 def with_parts(problem: Problem, parts: Parts) -> eq.Mechanism:
     """The mechanism with the real elements of one set of parts."""
-    mechanism = problem.mechanism
+    mechanism = problem.kept
     for number, k, u in zip(parts.block[0], parts.k[0], parts.u[0], strict=True):
         block = problem.blocks[number]
         mechanism = block.add(mechanism, float(k), u[: block.shape])
@@ -25,7 +25,7 @@ def with_parts(problem: Problem, parts: Parts) -> eq.Mechanism:
 
 def torque_of(problem: Problem, parts: Parts, q: np.ndarray) -> np.ndarray:
     """Weighted torques (N, n) of gravity and a set of parts, computed from real elements."""
-    return Potential(with_parts(problem, parts))(q).torque * problem.weights
+    return Potential(with_parts(problem, parts))(q).torque * problem.scale
 
 
 def some_springs(problem: Problem, seed: int = 0) -> Parts:

@@ -19,7 +19,7 @@ from .spring import Spring
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .synthesis import Design, design
+    from .synthesis import Design, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
@@ -30,6 +30,8 @@ __all__ = [
     "Loop",
     "Mechanism",
     "PointMass",
+    "Problem",
+    "Region",
     "Spring",
     "Workspace",
     "__version__",
@@ -37,6 +39,7 @@ __all__ = [
     "design",
     "load",
     "save",
+    "solve",
 ]
 
 _LAZY = {
@@ -45,7 +48,10 @@ _LAZY = {
     "load": "io",
     "save": "io",
     "Design": "synthesis",
+    "Problem": "synthesis",
+    "Region": "synthesis",
     "design": "synthesis",
+    "solve": "synthesis",
 }
 
 

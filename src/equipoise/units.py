@@ -90,3 +90,14 @@ def _pint(unit: str) -> str:
 def _show(value: object) -> str:
     text = "nothing" if value is None else str(value).lower() if isinstance(value, bool) else repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def to_share(value: object) -> float:
+    """A number, or text such as ``"5 %"`` or ``"0.05"``, as a share.
+
+    Raises:
+        ValueError: it is neither.
+    """
+    if isinstance(value, str):
+        return float(value.removesuffix("%")) / (100 if value.endswith("%") else 1)
+    return to_si(value, "number")

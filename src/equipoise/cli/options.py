@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
-from ..units import to_si
+from ..units import to_share, to_si
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
@@ -100,7 +100,7 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     expected = "expected a share such as 1e-3 or 0.1%, or a torque such as '0.5 N m'"
     share = torque = None
     try:
-        share = _share(text)
+        share = to_share(text)
     except ValueError:
         try:
             torque = to_si(text, "torque")
@@ -119,16 +119,12 @@ def share(text: str, option: str) -> float:
         InputError: it is not; the message names the option.
     """
     try:
-        value = _share(text)
+        value = to_share(text)
     except ValueError:
         value = inf
     if not 0 <= value <= 1:
         raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
     return value
-
-
-def _share(text: str) -> float:
-    return float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
 
 
 def names(text: str) -> list[str]:
@@ -186,11 +182,10 @@ def settings(texts: list[str], valid: dict[str, Parameter]) -> dict[str, Any]:
         parameter = valid[name]
         if dot and not parameter.each:
             raise InputError(Fault(("--set", name), f"is one value for the whole mechanism, found '{text}'"))
-        read = _values(name, value, parameter)
-        if not parameter.each:
-            found[name] = read
-        else:
-            found.setdefault(name, {})["*" if not dot else body] = read
+        place, key = (found.setdefault(name, {}), body if dot else "*") if parameter.each else (found, name)
+        if key in place:
+            raise InputError(Fault(("--set", name), f"is given twice, the second time by '{text}'"))
+        place[key] = _values(name, value, parameter)
     return found
 
 
@@ -222,7 +217,7 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
         case "share":
             try:
-                return _share(text)
+                return to_share(text)
             except ValueError:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None

@@ -48,16 +48,16 @@ class Fit:
         own = {b: Region.ball(max(float(np.linalg.norm(p)) for c, p in ends if c == b)) for b, _ in ends}
         own = {body: region for body, region in own.items() if region.half[0] > 0}  # else as large as its link
         self.problem = Problem.of(mechanism, pairs=pairs, regions=own | dict(regions))
-        self.lift = np.array([[self.problem.regions[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
-        self.box = np.array([[self.problem.regions[b].shape == "box" for b in pair] for pair in pairs])
+        self.lift = np.array([[self.problem.attachments[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
+        self.box = np.array([[self.problem.attachments[b].shape == "box" for b in pair] for pair in pairs])
         poses = tree.poses(q)
         velocities = tree.velocities(q, poses)
         self.Z, self.dZ = zip(*(stretch(poses, velocities, *(tree.index[b] for b in p)) for p in pairs), strict=True)
         rest = mechanism.with_springs(s for s in mechanism.springs if s.name not in lengths)
-        self.load = Potential(rest)(q).torque * self.problem.weights
+        self.load = Potential(rest)(q).torque * self.problem.scale
         for dZ in self.dZ:
-            dZ *= self.problem.weights[:, None, None]
-        gravity = Potential(mechanism)(q).gravity_torque * self.problem.weights
+            dZ *= self.problem.scale[:, None, None]
+        gravity = Potential(mechanism)(q).gravity_torque * self.problem.scale
         self.unit = float(np.linalg.norm(gravity)) or 1.0
         self.penalty = penalty
 

@@ -111,7 +111,7 @@ def _split(values: Array, blocks: Sequence[Block]) -> tuple[Array, ...]:
 
 def _averages(problem: Problem, blocks: Sequence[Block]) -> tuple[Array, Array] | None:
     """By Parseval: the mean square of a Fourier series' derivative is the sum of |k_j c_k|^2."""
-    mechanism = problem.mechanism
+    mechanism = problem.judged
     tree = Tree.of(mechanism)
     try:
         frames = Frames(tree)
@@ -130,7 +130,7 @@ def _averages(problem: Problem, blocks: Sequence[Block]) -> tuple[Array, Array] 
     for form, place in zip(every, [*_places(blocks), slice(-1, None)], strict=True):
         A[next(rows), place] = form.coef
     energy = A.real[~keys.any(axis=1), :-1].sum(axis=0)
-    A *= np.linalg.norm(keys[:, : tree.n] / frames.denominators * problem.weights, axis=1)[:, None]
+    A *= np.linalg.norm(keys[:, : tree.n] / frames.denominators * problem.scale, axis=1)[:, None]
     return _triangle(np.vstack([A.real, A.imag])), energy
 
 
@@ -138,9 +138,9 @@ def _samples(problem: Problem, blocks: Sequence[Block], progress: Progress | Non
     count = problem.count
     width = sum(block.unknowns for block in blocks) + 1
     R, mean, done = np.zeros((0, width)), np.zeros(width - 1), 0
-    q = sample(Tree.of(problem.mechanism), count, problem.seed)
+    q = sample(Tree.of(problem.judged), count, problem.seed)
     for torque, load, energy in torque_rows(problem, blocks, q):
-        rows = np.concatenate([torque, load[..., None]], axis=-1) * problem.weights[:, None] / np.sqrt(count)
+        rows = np.concatenate([torque, load[..., None]], axis=-1) * problem.scale[:, None] / np.sqrt(count)
         R = _triangle(np.vstack([R, rows.reshape(-1, width)]))
         mean += energy / count
         done += len(torque)
@@ -161,8 +161,8 @@ def torque_rows(problem: Problem, blocks: Sequence[Block], q: Array) -> Iterator
         (chunk, n, all unknowns) torque of each unknown, (chunk, n) torque of gravity and present springs [N m or N],
         and (all unknowns,) the sum over the chunk of each unknown's energy [J].
     """
-    tree = Tree.of(problem.mechanism)
-    load = Potential(problem.mechanism)
+    tree = Tree.of(problem.judged)
+    load = Potential(problem.judged)
     places = _places(blocks)
     width = places[-1].stop
     size = max(1, CHUNK_ENTRIES // max(1, tree.n * width))

@@ -10,7 +10,6 @@ from .design import FrontRow
 from .gram import Gram
 from .minimax import Peak
 from .polish import Parts
-from .problem import Objective
 from .search import FEASIBLE, Found
 
 
@@ -31,9 +30,9 @@ class Judge:
         least: the bound as a share of it.
     """
 
-    def __init__(self, gram: Gram, least: float, objective: Objective, bare: Mechanism) -> None:
-        self.gram, self.bare = gram, bare
-        self.peak = Peak.of(gram) if objective == "peak" else None
+    def __init__(self, gram: Gram, least: float) -> None:
+        self.gram = gram
+        self.peak = Peak.of(gram) if gram.problem.objective == "peak" else None
         self.unit = self.peak.unbalanced if self.peak else gram.unbalanced
         self.least = self.peak.bound().value if self.peak and least > 0 else least
 
@@ -41,7 +40,7 @@ class Judge:
         parts, value = found.parts, found.value
         if self.peak:
             parts, value = self.peak.polish(parts)
-        mechanism = self.bare
+        mechanism = self.gram.problem.kept
         for number, k, u in zip(parts.block[0], parts.k[0], parts.u[0], strict=True):
             block = self.gram.blocks[number]
             mechanism = block.add(mechanism, float(k), u[: block.shape])

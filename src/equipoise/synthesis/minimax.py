@@ -44,10 +44,10 @@ class Peak:
         problem = gram.problem
         to_w = np.linalg.pinv(np.concatenate(gram.columns, axis=1))
         L, load = [], []
-        q = sample(Tree.of(problem.mechanism), problem.count, problem.seed)
+        q = sample(Tree.of(problem.judged), problem.count, problem.seed)
         for T, torque, _ in torque_rows(problem, gram.blocks, q):
-            L.append((T @ to_w * problem.weights[:, None]).reshape(-1, len(gram.d)))
-            load.append((torque * problem.weights).ravel())
+            L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(gram.d)))
+            load.append((torque * problem.scale).ravel())
         every = np.concatenate(load)
         unit = float(np.abs(every).max()) or 1.0
         return Peak(gram, np.concatenate(L) / unit, every / unit, unit)

@@ -20,7 +20,7 @@ from ..mechanism import Mechanism, PointMass
 from ..report.poses import View, choose
 from ..report.skeleton import Skeleton
 from ..spring import Spring, Vec3
-from ..synthesis import Design, Region, design
+from ..synthesis import Design, Problem, Region, solve
 from ..synthesis.mounts import Mounts
 from ..synthesis.problem import Progress
 
@@ -177,12 +177,11 @@ class Model:
 
     def _designed(self, progress: Progress | None) -> Design:
         present = [spring for spring, on in zip(self.springs, self.on, strict=True) if on]
-        if not present:
-            return design(self.mechanism, "convex", springs=SPRINGS, progress=progress)
-        regions = _regions(self.mechanism, present)
-        pairs = list(dict.fromkeys((spring.body_a, spring.body_b) for spring in present))
-        options = {"pairs": pairs, "regions": regions, "springs": len(present), "progress": progress}
-        return design(self.mechanism, "convex", **options)
+        problem = Problem.of(self.mechanism)
+        if present:
+            regions = _regions(self.mechanism, present)
+            problem = problem.with_regions(regions).with_pairs((spring.body_a, spring.body_b) for spring in present)
+        return solve(problem, springs=len(present) or SPRINGS, progress=progress)
 
     def _take(self, springs: list[Spring], on: list[bool] | None = None) -> None:
         self.springs, self.on = springs, on or [True] * len(springs)
