@@ -7,6 +7,7 @@ import warnings
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,7 +40,14 @@ def ur5() -> eq.Mechanism:
 def delta() -> eq.Mechanism:
     """Full balance with data of which nothing is special."""
     bare = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, com_2=0.15, com_4=0.3).mechanism()
-    masses = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35, "spring_7": 1.8, "spring_10": 0.5}
+    masses: dict[str, Any] = {
+        "link_8": 0.3,
+        "link_9": 0.2,
+        "frame": 0.4,
+        "link_2p": 0.35,
+        "spring_7": 1.8,
+        "spring_10": 0.5,
+    }
     return eq.design(bare, "delta", BF=0.12, CS=0.1, **masses).mechanism
 
 

@@ -21,7 +21,7 @@ from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Worksp
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .synthesis import Design, design
+    from .synthesis import Design, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
@@ -32,6 +32,8 @@ __all__ = [
     "Loop",
     "Mechanism",
     "PointMass",
+    "Problem",
+    "Region",
     "Spring",
     "TorsionSpring",
     "Workspace",
@@ -40,6 +42,7 @@ __all__ = [
     "design",
     "load",
     "save",
+    "solve",
 ]
 
 _LAZY = {
@@ -48,7 +51,10 @@ _LAZY = {
     "load": "io",
     "save": "io",
     "Design": "synthesis",
+    "Problem": "synthesis",
+    "Region": "synthesis",
     "design": "synthesis",
+    "solve": "synthesis",
 }
 
 notebook.supplied_by(lambda: import_module(f"{__name__}.report.notebook"))

@@ -73,6 +73,17 @@ def to_si(value: object, dimension: str) -> float:
     return number
 
 
+def to_share(value: object) -> float:
+    """A number, or text such as ``"5 %"`` or ``"0.05"``, as a share.
+
+    Raises:
+        ValueError: it is neither.
+    """
+    if isinstance(value, str):
+        return float(value.removesuffix("%")) / (100 if value.endswith("%") else 1)
+    return to_si(value, "number")
+
+
 def quantity(value: object, dimension: str, *field: str | int) -> float:
     """`to_si` for a field of an input or an argument of a function.
 
@@ -92,8 +103,7 @@ def share(value: object, *field: str | int, most: float = 1.0) -> float:
         InputError: it is not; the message names the field.
     """
     try:
-        text = str(value)
-        number = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        number = to_share(value)
     except ValueError:
         number = math.nan
     if not 0 <= number <= most:

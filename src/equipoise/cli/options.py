@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
-from ..units import quantity, to_si
+from ..units import quantity, to_share, to_si
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
@@ -89,7 +89,7 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     expected = "expected a share such as 1e-3 or 0.1%, or a torque such as '0.5 N m'"
     share = torque = None
     try:
-        share = _share(text)
+        share = to_share(text)
     except ValueError:
         try:
             torque = to_si(text, "torque")
@@ -99,10 +99,6 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
-
-
-def _share(text: str) -> float:
-    return float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
 
 
 def names(text: str) -> list[str]:
@@ -160,11 +156,10 @@ def settings(texts: list[str], valid: dict[str, Parameter]) -> dict[str, Any]:
         parameter = valid[name]
         if dot and not parameter.each:
             raise InputError(Fault(("--set", name), f"is one value for the whole mechanism, found '{text}'"))
-        read = _values(name, value, parameter)
-        if not parameter.each:
-            found[name] = read
-        else:
-            found.setdefault(name, {})["*" if not dot else body] = read
+        place, key = (found.setdefault(name, {}), body if dot else "*") if parameter.each else (found, name)
+        if key in place:
+            raise InputError(Fault(("--set", name), f"is given twice, the second time by '{text}'"))
+        place[key] = _values(name, value, parameter)
     return found
 
 
@@ -196,7 +191,7 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
         case "share":
             try:
-                return _share(text)
+                return to_share(text)
             except ValueError:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None

@@ -152,7 +152,7 @@ def front_table(design: Design) -> Table:
             "exact" if row.exact else torque(row.residual),
             percent(row.residual / design.unbalanced),
             "-" if row.bound is None else torque(row.bound),
-            Text(" ".join(f"{a}:{b}" for a, b in row.pairs)),
+            Text(" ".join(":".join(pair) for pair in row.pairs)),
         )
     return table
 

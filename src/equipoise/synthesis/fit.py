@@ -16,9 +16,9 @@ from ..elements import lines
 from ..energy.evaluate import Potential
 from ..kinematics import Tree
 from ..mechanism import Mechanism
-from .gram import stretch
-from .polish import project
-from .problem import Problem, Region
+from .problem import Problem
+from .region import Region, project
+from .spring_block import at_ends, between, stretch
 
 WIDTH = 8  # unknowns of a spring: log stiffness, u_a, u_b in their regions' coordinates (as in `polish`), preload
 SHRUNK = (1.0, 0.5, 0.25)  # starts: one attachment of every spring drawn in by so much, stiffened by as much
@@ -50,16 +50,16 @@ class Fit:
         own = {b: Region.ball(max(float(np.linalg.norm(p)) for c, p in ends if c == b)) for b, _ in ends}
         own = {body: region for body, region in own.items() if region.half[0] > 0}  # else as large as its link
         self.problem = Problem.of(mechanism, pairs=pairs, regions=own | dict(regions))
-        self.lift = np.array([[self.problem.regions[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
-        self.box = np.array([[self.problem.regions[b].shape == "box" for b in pair] for pair in pairs])
+        self.lift = np.array([[self.problem.attachments[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
+        self.box = np.array([[self.problem.attachments[b].shape == "box" for b in pair] for pair in pairs])
         poses = tree.poses(q)
         velocities = tree.velocities(q, poses)
         self.Z, self.dZ = zip(*(stretch(poses, velocities, *(tree.index[b] for b in p)) for p in pairs), strict=True)
         rest = mechanism.with_springs(s for s in mechanism.springs if s.name not in lengths)
-        self.load = Potential(rest)(q).torque * self.problem.weights
+        self.load = Potential(rest)(q).torque * self.problem.scale
         for dZ in self.dZ:
-            dZ *= self.problem.weights[:, None, None]
-        gravity = Potential(mechanism)(q).gravity_torque * self.problem.weights
+            dZ *= self.problem.scale[:, None, None]
+        gravity = Potential(mechanism)(q).gravity_torque * self.problem.scale
         self.unit = float(np.linalg.norm(gravity)) or 1.0
         self.penalty = penalty
 
@@ -134,7 +134,7 @@ class Fit:
         J = np.zeros((S, WIDTH, *torque.shape))
         slack, J_slack = np.zeros((S, len(torque))), np.zeros((S, WIDTH, len(torque)))
         for i in range(S):
-            z = np.array([*p[i, 0], 1.0, *p[i, 1]])
+            z = between(p[i])
             d, rate = self.Z[i] @ z, self.dZ[i] @ z  # (N, 3), (N, n, 3)
             length = np.maximum(np.linalg.norm(d, axis=1), 1e-9)
             power = np.einsum("ni,nji->nj", d, rate)
@@ -182,8 +182,9 @@ class Fit:
 
     @staticmethod
     def _by_u(by_z: Array, inner: Array) -> Array:
-        """(..., 7) derivatives by z -> (..., 6) by u_a and u_b."""
-        return np.concatenate([by_z[..., :3] @ inner[0], by_z[..., 4:] @ inner[1]], axis=-1)
+        """Derivatives by z -> (..., 6) by u_a and u_b."""
+        by_u = at_ends(by_z)[..., None, :] @ inner
+        return by_u.reshape(*by_z.shape[:-1], -1)
 
 
 def _diagonal(J: Array) -> Array:

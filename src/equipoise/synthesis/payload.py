@@ -20,6 +20,7 @@ from ..io.text import Names
 from ..mechanism import Mechanism, PointMass
 from .bevel.shoulder import Shoulder
 from .given import number, vectors
+from .options import Number
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Payload:
     place: Array
 
     @staticmethod
-    def of(shoulder: Shoulder, masses: Sequence[float] | None, place: Sequence[float] | None) -> Payload:
+    def of(shoulder: Shoulder, masses: Sequence[Number] | None, place: Sequence[Number] | None) -> Payload:
         """One mass or a range, at a point of the pitch link or at its mass centre.
 
         Raises:
@@ -84,7 +85,7 @@ class Payload:
         return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
 
-def _range(masses: Sequence[float]) -> tuple[float, float]:
+def _range(masses: Sequence[Number]) -> tuple[float, float]:
     if len(masses) not in (1, 2):
         raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
     low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))

@@ -22,7 +22,7 @@ from ..mechanism import Mechanism, PointMass
 from ..progress import Progress
 from ..report.poses import View, choose
 from ..report.skeleton import Skeleton
-from ..synthesis import Design, Region, design
+from ..synthesis import Design, Problem, Region, solve
 from ..synthesis.mounts import Mounts
 
 POSES, CLOSED = 256, 48  # random poses of the live residual; closing loops takes longer
@@ -181,11 +181,11 @@ class Model:
         present = [spring for spring, on in zip(self.springs, self.on, strict=True) if on]
         chosen = [spring for spring in present if isinstance(spring, Spring)]
         kept = self.mechanism.with_springs(spring for spring in present if spring not in chosen)
-        if not chosen:
-            return design(kept, "convex", springs=SPRINGS, keep=bool(kept.springs), progress=progress)
-        pairs = list(dict.fromkeys((spring.body_a, spring.body_b) for spring in chosen))
-        options = {"pairs": pairs, "regions": _regions(kept, chosen), "springs": len(chosen), "progress": progress}
-        return design(kept, "convex", keep=bool(kept.springs), **options)
+        problem = Problem.of(kept, keep=bool(kept.springs))
+        if chosen:
+            regions = _regions(kept, chosen)
+            problem = problem.with_regions(regions).with_pairs((spring.body_a, spring.body_b) for spring in chosen)
+        return solve(problem, springs=len(chosen) or SPRINGS, progress=progress)
 
     def _take(self, springs: list[Element], on: list[bool] | None = None) -> None:
         self.springs, self.on = springs, on or [True] * len(springs)
