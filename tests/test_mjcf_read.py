@@ -19,12 +19,12 @@ from zoo import ZOO, exact_pendulum
 import equipoise as eq
 from equipoise.cli.export import assembled
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
-from equipoise.mechanism import Capsule
+from equipoise.model.errors import EquipoiseWarning, InputError, UnsupportedError
+from equipoise.model.mechanism import Capsule
 
 EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 

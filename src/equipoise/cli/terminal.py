@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import EquipoiseWarning, visible
+from ..model.errors import EquipoiseWarning, visible
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
-    from ..progress import Progress
+    from ..model.mechanism import Mechanism
+    from ..model.progress import Progress
 
 
 def load(file: Path) -> Mechanism:

@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 from . import models
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
+    from ..model.mechanism import Mechanism
 
 YAML_SUFFIXES = (".yaml", ".yml")
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`

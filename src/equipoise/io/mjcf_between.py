@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..elements import Element, Spring, TorsionSpring, Vec3
-from ..mechanism import Coupling, Loop
+from ..model.arrays import Array
+from ..model.elements import Element, Spring, TorsionSpring, Vec3
+from ..model.mechanism import Coupling, Loop
 from .text import Names
 
 Places = dict[int, tuple[str, Array]]

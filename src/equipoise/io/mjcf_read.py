@@ -27,11 +27,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError
-from ..mechanism import WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
-from ..rotation import about, ball_angles, from_quaternion, to_rpy
-from ..validate import MOST
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError
+from ..model.mechanism import WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
+from ..model.rotation import about, ball_angles, from_quaternion, to_rpy
+from ..model.validate import MOST
 from . import mjcf
 from .mjcf_between import Between, Places, vec3
 from .mjcf_compile import compiled
