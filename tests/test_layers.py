@@ -13,7 +13,7 @@ CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 def test_the_core_names_nothing_above_it():
     """Import contracts do not see imports by string, so the core has none, and no string with a module of ours."""
-    core = [name.partition(".")[2] for name in CONTRACTS[1]["source_modules"]]
+    core = [name.partition(".")[2] for name in next(c for c in CONTRACTS if "source_modules" in c)["source_modules"]]
     files = [path for name in core for path in [SOURCE / f"{name}.py", *(SOURCE / name).rglob("*.py")] if path.exists()]
     assert len(files) > len(core)
     modules = {path.stem for path in SOURCE.iterdir()}
