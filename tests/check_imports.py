@@ -17,7 +17,6 @@ import grimp
 SOURCE, PACKAGE = Path(__file__).parents[1] / "src", "equipoise"
 ALLOWED = {
     ("equipoise.kinematics.tree", "equipoise.kinematics.linkage"): "`Tree.of` gives the mechanism with loops its own",
-    ("equipoise.notebook", "equipoise.report.notebook"): "values show themselves in a notebook, when it asks",
 }
 """Imports (from, to) that may close a circle, and why they must."""
 
@@ -59,8 +58,10 @@ def named(module: str, modules: set[str]) -> Iterator[str]:
     path = SOURCE / module.replace(".", "/")
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in modules - {PACKAGE}:
-            yield node.value
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            name = f"{PACKAGE}{node.value}" if node.value.startswith(".") else node.value
+            if name in modules - {PACKAGE}:
+                yield name
 
 
 def circles(edges: Edges) -> list[list[str]]:
