@@ -58,8 +58,10 @@ def named(module: str, modules: set[str]) -> Iterator[str]:
     path = SOURCE / module.replace(".", "/")
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in modules - {PACKAGE}:
-            yield node.value
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            name = f"{PACKAGE}{node.value}" if node.value.startswith(".") else node.value
+            if name in modules - {PACKAGE}:
+                yield name
 
 
 def circles(edges: Edges) -> list[list[str]]:
