@@ -19,7 +19,7 @@ from .spring import Spring
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .synthesis import Design, Problem, Region, design, solve
+    from .synthesis import Design, Load, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
@@ -27,6 +27,7 @@ __all__ = [
     "Coupling",
     "Design",
     "Joint",
+    "Load",
     "Loop",
     "Mechanism",
     "PointMass",
@@ -48,6 +49,7 @@ _LAZY = {
     "load": "io",
     "save": "io",
     "Design": "synthesis",
+    "Load": "synthesis",
     "Problem": "synthesis",
     "Region": "synthesis",
     "design": "synthesis",
