@@ -21,7 +21,7 @@ from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, 
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .synthesis import Design, Problem, Region, design, solve
+    from .synthesis import Design, Load, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
@@ -29,6 +29,7 @@ __all__ = [
     "Coupling",
     "Design",
     "Joint",
+    "Load",
     "Loop",
     "Mechanism",
     "PointMass",
@@ -51,6 +52,7 @@ _LAZY = {
     "load": "io",
     "save": "io",
     "Design": "synthesis",
+    "Load": "synthesis",
     "Problem": "synthesis",
     "Region": "synthesis",
     "design": "synthesis",

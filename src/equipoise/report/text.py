@@ -106,6 +106,9 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
             else "no springs on these pairs and regions leave less"
         )
         yield Text(f"  bound       {least}: {why}; {gap}")
+    for load in design.loads if len(design.loads) > 1 else ():
+        share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
+        yield Text(f"  {load.name:<11} {torque(load.residual, floor)} N m  = {share} of {load.unbalanced:.5g} N m")
     for name, value in design.free_parameters.items() if method.exact else ():
         yield Text(f"  {name:<11} {free_value(value, method.parameters.get(name))}")
     if design.ordinary is not None:

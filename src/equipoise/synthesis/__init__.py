@@ -2,8 +2,9 @@
 
 from .convex.method import solve
 from .design import Design
+from .load import Load
 from .method import Method, Parameter
 from .methods import METHODS, by_name, design
 from .problem import Problem, Region
 
-__all__ = ["METHODS", "Design", "Method", "Parameter", "Problem", "Region", "by_name", "design", "solve"]
+__all__ = ["METHODS", "Design", "Load", "Method", "Parameter", "Problem", "Region", "by_name", "design", "solve"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,16 @@ class FrontRow:
     bound: float | None
     pairs: tuple[tuple[str, ...], ...]
     exact: bool
+
+
+@dataclass(frozen=True)
+class LoadResidual:
+    """Of a load case: what it counts, the torque that is left and the torque without springs [N m]."""
+
+    name: str
+    weight: float
+    residual: float
+    unbalanced: float
 
 
 @dataclass(frozen=True)
@@ -76,6 +86,8 @@ class Design(Shown):
         free_parameters: the options the method was called with.
         exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.
         infeasible: the proof that they cannot.
+        loads: what is left under each load; the numbers above are for all together. `balance` is about the mechanism
+            as it is.
         front: the best design for each number of springs, when it was asked for.
         ordinary: what was lost when the springs got a free length, or room.
     """
@@ -92,6 +104,7 @@ class Design(Shown):
     free_parameters: Mapping[str, Any] = field(default_factory=dict)
     exact_feasible: bool | None = None
     infeasible: Infeasible | None = None
+    loads: tuple[LoadResidual, ...] = ()
     front: tuple[FrontRow, ...] = ()
     ordinary: Ordinary | None = None
 
@@ -141,7 +154,7 @@ class Design(Shown):
         given = {**self.free_parameters, "free_length": dict(found.free_length), **options}
         design = replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
-            joints=None, averaged=False, samples=samples, free_parameters=given, ordinary=found,
+            joints=None, averaged=False, samples=samples, loads=(), free_parameters=given, ordinary=found,
         ).with_provenance()  # fmt: skip
         design.__dict__["balance"] = replace(found.balance, mechanism=design.mechanism)  # judged once
         return design
@@ -184,6 +197,7 @@ class Design(Shown):
                 "far": self.infeasible.far,
                 "remedies": [list(pair) for pair in self.infeasible.remedies],
             },
+            "loads": [asdict(load) for load in self.loads],
             "front": [
                 {
                     "springs": row.springs,

@@ -21,6 +21,7 @@ from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.blocks import Block
 from .convex.spring_block import SpringBlock
 from .given import number
+from .load import OWN, Load
 from .mounts import Mounts
 from .options import Number, Options, option, takes
 from .region import SHAPES, Region, Shape
@@ -50,6 +51,8 @@ class ProblemOptions(Options):
         seed: of those poses.
         unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
         keep: the mechanism's own springs stay and count as a load; else they are replaced.
+        loads: what has to be balanced, by default the mechanism as it is; of several the weighted mean of the mean
+            squares counts, or the largest of all peaks.
     """
 
     span: int = option(2, "whole", "springs join bodies at most this many moving joints apart (default 2)")
@@ -66,6 +69,7 @@ class ProblemOptions(Options):
     seed: int = option(0, "whole", "of the random poses (default 0)")
     unlimited: bool = False
     keep: bool = False
+    loads: Iterable[Load] = (OWN,)
 
 
 @dataclass(frozen=True)
@@ -77,11 +81,11 @@ class Problem:
         regions: body -> attachment region, where one is given; `attachments` has those of every body in `pairs`.
         radius, shape: of the other regions [m]; by default from each link's size.
         beside: other blocks of unknowns than the springs of the pairs.
-        objective, joints, weights, samples, seed, unlimited, keep: see `ProblemOptions`.
+        objective, joints, weights, samples, seed, unlimited, keep, loads: see `ProblemOptions`.
 
     Raises:
         InputError: an unknown body or joint, a pair of one body, nothing to choose, an option out of range, a region
-            of no size or out of all proportion to the mechanism, loops that cannot be closed.
+            of no size or out of all proportion to the mechanism, loads of one name, loops that cannot be closed.
     """
 
     mechanism: Mechanism
@@ -94,6 +98,7 @@ class Problem:
     seed: int = 0
     unlimited: bool = False
     keep: bool = False
+    loads: tuple[Load, ...] = (OWN,)
     radius: float | None = None
     shape: Shape = "ball"
     beside: tuple[Block, ...] = ()
@@ -130,6 +135,10 @@ class Problem:
         self._set("regions", dict(self.regions))
         self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
         self._set("weights", _weights(self.judged, self.weights))
+        self._set("loads", tuple(self.loads))
+        names = [load.name for load in self.loads]
+        if not names or len({*names}) < len(names):
+            raise InputError(Fault(("loads",), f"must be one or more with different names, found {names}"))
         reach = Mounts.of(self.judged).reach
         for name in dict.fromkeys(name for pair in self.pairs for name in pair):
             self.attachments[name].check(name, reach)
@@ -152,6 +161,10 @@ class Problem:
     def with_poses(self, samples: int | None = None, *, seed: int = 0, unlimited: bool = False) -> Problem:
         """The same problem judged on other poses; see `ProblemOptions`."""
         return replace(self, samples=samples, seed=seed, unlimited=unlimited)
+
+    def with_loads(self, loads: Iterable[Load]) -> Problem:
+        """The same problem for other loads."""
+        return replace(self, loads=tuple(loads))
 
     def enlarged(self, factor: float) -> Problem:
         """The same problem with every region enlarged about its centre."""
@@ -185,6 +198,11 @@ class Problem:
             return self.kept
         joints = (replace(j, range=None) if j.type == "revolute" else j for j in self.kept.joints)
         return replace(self.kept, joints=tuple(joints))
+
+    @cached_property
+    def cases(self) -> tuple[Mechanism, ...]:
+        """`judged` under each load."""
+        return tuple(load.on(self.judged) for load in self.loads)
 
     @property
     def count(self) -> int:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...balance import fourier_form
 from ...model.mechanism import Mechanism
-from ..design import FrontRow
+from ..design import FrontRow, LoadResidual
 from .few_springs import FEASIBLE, Found
 from .least_squares_form import Gram
 from .peak import Peak
@@ -46,10 +48,24 @@ class Judge:
             mechanism = block.add(mechanism, float(k), u[: block.shape])
         return Judged(mechanism, parts, value)
 
+    def of_loads(self, judged: Judged) -> tuple[LoadResidual, ...]:
+        """What is left under each load, in terms of the objective."""
+        if self.peak:
+            torques = (self.peak.torque(judged.parts), self.peak.load)
+            left, unbalanced = (self.unit * self.peak.of_loads(torque) for torque in torques)
+        else:
+            x = judged.parts.unknowns(self.gram)
+            left = [case.rms(x) for case in self.gram.cases]
+            unbalanced = [float(np.linalg.norm(case.load)) for case in self.gram.cases]
+        return tuple(
+            LoadResidual(load.name, load.weight, float(residual), float(before))
+            for load, residual, before in zip(self.gram.problem.loads, left, unbalanced, strict=True)
+        )
+
     def row(self, found: Found) -> FrontRow:
         """A line of the front; exact only with a certificate."""
         judged = self(found)
-        series, _ = fourier_form(judged.mechanism)
+        forms = (fourier_form(load.on(judged.mechanism))[0] for load in self.gram.problem.loads)
         # the bounds of few parts are bounds of the mean square
         bound = None if self.peak or found.bound is None else min(found.bound, found.value)
         return FrontRow(
@@ -57,5 +73,5 @@ class Judge:
             residual=judged.value * self.unit,
             bound=None if bound is None else (bound if bound >= FEASIBLE else 0.0) * self.unit,
             pairs=tuple(self.gram.blocks[number].place for number in judged.parts.block[0]),
-            exact=series is not None and series.exact,
+            exact=all(form is not None and form.exact for form in forms),
         )

@@ -22,11 +22,24 @@ from ...kinematics import Tree, sample
 from ...kinematics.sampling import whole_turns
 from ...model.arrays import Array, Complexes
 from ...model.errors import InputError, NoFourierForm
+from ...model.mechanism import Mechanism
 from ...model.progress import Progress
 from ..problem import Problem
 from .blocks import Block
 
 RANK = 1e-12  # singular values below this share of the largest are rounding
+
+
+@dataclass(frozen=True)
+class Case:
+    """One load by itself: ``|sum_b columns_b x_b + load|`` is its root mean square torque [N m] at unknowns x_b."""
+
+    columns: tuple[Array, ...]
+    load: Array
+
+    def rms(self, x: Sequence[Array]) -> float:
+        """[N m] what unknowns x leave."""
+        return float(np.linalg.norm(sum((A @ own for A, own in zip(self.columns, x, strict=True)), self.load)))
 
 
 @dataclass(frozen=True)
@@ -37,7 +50,8 @@ class Gram:
         blocks: the unknowns; columns: for each (rows, unknowns), d: (rows,), rest: the root mean square torque over
             `unbalanced` at unknowns x_b is ``sqrt(|sum_b columns_b x_b + d|^2 + rest^2)``.
         cost: for each block (unknowns,) [J], what equal designs should have little of: their stored energy, as a rule.
-        unbalanced: [N m] root mean square torque to be balanced, all joints together.
+        unbalanced: [N m] root mean square torque to be balanced, all joints together, the weighted mean of all loads.
+        cases: each load by itself.
         averaged: the averages are exact over all configurations, not over samples.
     """
 
@@ -49,11 +63,13 @@ class Gram:
     cost: tuple[Array, ...]
     unbalanced: float
     averaged: bool
+    cases: tuple[Case, ...]
 
     def on(self, chosen: Sequence[int]) -> Gram:
         """The same problem restricted to some of its blocks (by number)."""
+        cases = tuple(Case(tuple(case.columns[i] for i in chosen), case.load) for case in self.cases)
         parts = {name: tuple(getattr(self, name)[i] for i in chosen) for name in ("blocks", "columns", "cost")}
-        return replace(self, **parts)
+        return replace(self, cases=cases, **parts)
 
     def times(self, x: Sequence[Array]) -> Array:
         """(rows,) ``sum_b columns_b x_b``: what the unknowns x do."""
@@ -62,9 +78,13 @@ class Gram:
     def enlarged(self, factor: float) -> Gram:
         """The same problem with every region `factor` times as large about its centre."""
         larger = [block.enlarged(factor) for block in self.blocks]
-        columns = tuple(own * scale for own, (_, scale) in zip(self.columns, larger, strict=True))
-        cost = tuple(own * scale for own, (_, scale) in zip(self.cost, larger, strict=True))
-        return replace(self, blocks=tuple(block for block, _ in larger), columns=columns, cost=cost)
+
+        def scaled(each: Sequence[Array]) -> tuple[Array, ...]:
+            return tuple(own * scale for own, (_, scale) in zip(each, larger, strict=True))
+
+        cases = tuple(Case(scaled(case.columns), case.load) for case in self.cases)
+        parts = {"columns": scaled(self.columns), "cost": scaled(self.cost), "cases": cases}
+        return replace(self, blocks=tuple(block for block, _ in larger), **parts)
 
     @property
     def useful(self) -> list[int]:
@@ -82,10 +102,12 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
         InputError: its loops cannot be closed, its numbers or regions are so large that the torques overflow.
     """
     blocks = problem.blocks
+    weights = np.array([load.weight for load in problem.loads])
+    shares = np.sqrt(weights / weights.sum())
     with np.errstate(over="ignore", invalid="ignore"):
-        rows = None if problem.samples is not None else _averages(problem, blocks)
-        averaged = rows is not None
-        R, energy = rows or _samples(problem, blocks, progress)
+        factors, energy, averaged = _factors(problem, progress)
+        weighted = np.vstack([share * F for share, F in zip(shares, factors, strict=True)])
+        R = _triangle(weighted) if len(factors) > 1 else weighted
         finite = np.isfinite(R**2).all()
     if not finite:
         raise InputError(f"mechanism '{problem.mechanism.name}' has numbers so large that its torques overflow")
@@ -97,52 +119,79 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
     unit = total or 1.0
     columns = _split(S[:rank, None] * Vt[:rank] / unit, blocks)
     cost = tuple(block.cost(own) for block, own in zip(blocks, _split(energy, blocks), strict=True))
-    return Gram(problem, blocks, columns, d / unit, float(rest) / unit, cost, total, averaged)
+    cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in factors)
+    return Gram(problem, blocks, columns, d / unit, float(rest) / unit, cost, total, averaged, cases)
 
 
-def _places(blocks: Sequence[Block]) -> list[slice]:
-    """Where each block's unknowns stand among all of them."""
-    ends = np.cumsum([0, *(block.unknowns for block in blocks)]).tolist()
+def together(problem: Problem) -> list[tuple[Mechanism, ...]]:
+    """The mechanism under each load, in groups in which the unknowns do the same: all, but for those with weight."""
+    return [(case,) for case in problem.cases] if any(block.weighs for block in problem.blocks) else [problem.cases]
+
+
+def _factors(problem: Problem, progress: Progress | None) -> tuple[list[Array], Array, bool]:
+    """For each load (rows, all unknowns and the load), the energies (all unknowns,), and whether they are averages."""
+    factors: list[Array] = []
+    energy, averaged = np.zeros(0), False
+    for loaded in together(problem):
+        rows = None if problem.samples is not None else _averages(problem, loaded)
+        averaged = rows is not None
+        R, energy = rows or _samples(problem, loaded, progress)
+        unknowns = R.shape[1] - len(loaded)
+        factors += [np.column_stack([R[:, :unknowns], load]) for load in R[:, unknowns:].T]
+    return factors, energy, averaged
+
+
+def _places(widths: Sequence[int]) -> list[slice]:
+    """Where columns of these widths stand beside each other."""
+    ends = np.cumsum([0, *widths]).tolist()
     return [slice(start, end) for start, end in pairwise(ends)]
 
 
 def _split(values: Array, blocks: Sequence[Block]) -> tuple[Array, ...]:
     """(..., all unknowns) -> (..., unknowns) of each block."""
-    return tuple(np.ascontiguousarray(values[..., place]) for place in _places(blocks))
+    return tuple(np.ascontiguousarray(values[..., place]) for place in _places([block.unknowns for block in blocks]))
 
 
-def _averages(problem: Problem, blocks: Sequence[Block]) -> tuple[Array, Array] | None:
+def _averages(problem: Problem, loaded: Sequence[Mechanism]) -> tuple[Array, Array] | None:
     """By Parseval: the mean square of a Fourier series' derivative is the sum of |k_j c_k|^2."""
-    mechanism = problem.judged
-    tree = Tree.of(mechanism)
+    blocks = problem.blocks
+    tree = Tree.of(loaded[0])
     try:
-        frames = Frames(tree)
+        every = [Frames(Tree.of(mechanism)) for mechanism in loaded]
+        frames = every[0]
         if not whole_turns(tree, frames.denominators):
             return None
-        load = Series.sum([gravity_series(frames), *(spring.series(frames) for spring in mechanism.springs)])
-        forms = [block.series(frames) for block in blocks]
+        loads = [_load(own) for own in every]
+        forms = [*(block.series(frames) for block in blocks), *loads]
     except NoFourierForm:
         return None
-    every = [*forms, Series(load.keys, load.coef[:, :, 0])]
-    keys, inverse = np.unique(np.concatenate([s.keys for s in every]), axis=0, return_inverse=True)
+    keys, inverse = np.unique(np.concatenate([s.keys for s in forms]), axis=0, return_inverse=True)
     if keys[:, tree.n :].any():
         return None  # a power of an angle has no average over all turns
-    rows = iter(np.split(inverse.ravel(), np.cumsum([len(s) for s in every])[:-1]))
-    A: Complexes = np.zeros((len(keys), sum(block.unknowns for block in blocks) + 1), complex)
-    for form, place in zip(every, [*_places(blocks), slice(-1, None)], strict=True):
-        A[next(rows), place] = form.coef
-    energy = A.real[~keys.any(axis=1), :-1].sum(axis=0)
+    places = _places([*(block.unknowns for block in blocks), *(1 for _ in loads)])
+    A: Complexes = np.zeros((len(keys), places[-1].stop), complex)
+    rows = np.split(inverse.ravel(), np.cumsum([len(s) for s in forms])[:-1])
+    for form, row, place in zip(forms, rows, places, strict=True):
+        A[row, place] = form.coef
+    energy = A.real[~keys.any(axis=1), : -len(loads)].sum(axis=0)
     A *= np.linalg.norm(keys[:, : tree.n] / frames.denominators * problem.scale, axis=1)[:, None]
     return _triangle(np.vstack([A.real, A.imag])), energy
 
 
-def _samples(problem: Problem, blocks: Sequence[Block], progress: Progress | None) -> tuple[Array, Array]:
-    count = problem.count
-    width = sum(block.unknowns for block in blocks) + 1
-    R, mean, done = np.zeros((0, width)), np.zeros(width - 1), 0
+def _load(frames: Frames) -> Series:
+    """Gravity and the springs that stay; coefficients (T, 1) [J]."""
+    springs = (spring.series(frames) for spring in frames.tree.mechanism.springs)
+    total = Series.sum([gravity_series(frames), *springs])
+    return Series(total.keys, total.coef[:, :, 0])
+
+
+def _samples(problem: Problem, loaded: Sequence[Mechanism], progress: Progress | None) -> tuple[Array, Array]:
+    blocks, count = problem.blocks, problem.count
+    width = sum(block.unknowns for block in blocks) + len(loaded)
+    R, mean, done = np.zeros((0, width)), np.zeros(width - len(loaded)), 0
     q = sample(Tree.of(problem.judged), count, problem.seed)
-    for torque, load, energy in torque_rows(problem, blocks, q):
-        rows = np.concatenate([torque, load[..., None]], axis=-1) * problem.scale[:, None] / np.sqrt(count)
+    for torque, loads, energy in torque_rows(blocks, loaded, q):
+        rows = np.concatenate([torque, loads], axis=-1) * problem.scale[:, None] / np.sqrt(count)
         R = _triangle(np.vstack([R, rows.reshape(-1, width)]))
         mean += energy / count
         done += len(torque)
@@ -156,16 +205,19 @@ def _triangle(rows: Array) -> Array:
     return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
-def torque_rows(problem: Problem, blocks: Sequence[Block], q: Array) -> Iterator[tuple[Array, Array, Array]]:
+def torque_rows(blocks: Sequence[Block], loaded: Sequence[Mechanism], q: Array) -> Iterator[tuple[Array, Array, Array]]:
     """Torques at `q` (N, n) as linear functions of the unknowns, in chunks of configurations.
 
+    Args:
+        loaded: the mechanism under loads that make no difference to what the unknowns do, see `together`.
+
     Yields:
-        (chunk, n, all unknowns) torque of each unknown, (chunk, n) torque of gravity and present springs [N m or N],
-        and (all unknowns,) the sum over the chunk of each unknown's energy [J].
+        (chunk, n, all unknowns) torque of each unknown, (chunk, n, loads) torque of gravity and present springs [N m or
+        N], and (all unknowns,) the sum over the chunk of each unknown's energy [J].
     """
-    tree = Tree.of(problem.judged)
-    load = Potential(problem.judged)
-    places = _places(blocks)
+    tree = Tree.of(loaded[0])
+    loads = [Potential(mechanism) for mechanism in loaded]
+    places = _places([block.unknowns for block in blocks])
     width = places[-1].stop
     size = max(1, CHUNK_ENTRIES // max(1, tree.n * width))
     for start in range(0, len(q), size):
@@ -175,4 +227,4 @@ def torque_rows(problem: Problem, blocks: Sequence[Block], q: Array) -> Iterator
         torque, energy = np.empty((len(chunk), tree.n, width)), np.empty(width)
         for block, place in zip(blocks, places, strict=True):
             torque[..., place], energy[place] = block.sampled(tree, chunk, poses, velocities)
-        yield torque, load(chunk).torque, energy
+        yield torque, np.stack([load(chunk).torque for load in loads], axis=-1), energy

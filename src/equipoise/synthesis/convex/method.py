@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from ...balance import check
 from ...model.errors import EquipoiseError, InfeasibleError, InputError
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
 from ...model.validate import whole_number
 from ..design import Design, Infeasible
+from ..load import OWN
 from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
@@ -96,14 +98,21 @@ def solve(problem: Problem, options: SolverOptions) -> Design:
         free_parameters=_free(problem, options),
         exact_feasible=infeasible is None,
         infeasible=infeasible,
+        loads=judge.of_loads(best),
         front=tuple(judge.row(row) for row in tried) if options.front else (),
     ).with_provenance()
-    if options.exact and not design.balance.exact:
+    if options.exact and not _exact(design, problem):
         raise InfeasibleError(
             f"springs on these pairs may balance exactly, but none were found with {found.count} or fewer: "
             f"the best leaves {design.residual:.3g} N m {design.objective} where it counts; allow more springs"
         )
     return design
+
+
+def _exact(design: Design, problem: Problem) -> bool:
+    """Whether it is proved under every load."""
+    loaded = (load.on(design.mechanism) for load in problem.loads)
+    return all((design.balance if m == design.mechanism else check(m)).exact for m in loaded)
 
 
 def applies(mechanism: Mechanism) -> list[str]:
@@ -114,9 +123,11 @@ def applies(mechanism: Mechanism) -> list[str]:
 def _worth_solving(gram: Gram) -> Gram:
     """The problem on those of its pairs that have an effect."""
     mechanism = gram.problem.judged
-    mass = sum(mass for _, mass, _ in lumped_masses(mechanism))
-    weight = mass * float(np.linalg.norm(mechanism.gravity)) * Mounts.of(mechanism).reach
-    if gram.unbalanced <= ROUNDING * weight:
+    weight = max(
+        sum(mass for _, mass, _ in lumped_masses(case)) * float(np.linalg.norm(case.gravity))
+        for case in gram.problem.cases
+    )
+    if gram.unbalanced <= ROUNDING * weight * Mounts.of(mechanism).reach:
         what = "the springs that stay balance" if mechanism.springs else "gravity loads"
         which = "every joint that counts already" if mechanism.springs else "no joint that counts"
         raise InputError(f"mechanism '{mechanism.name}': nothing to balance, {what} {which}")
@@ -181,6 +192,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
         "objective": problem.objective,
         "joints": None if problem.joints is None else list(problem.joints),
         **({"weights": dict(problem.weights)} if problem.weights else {}),
+        **({"loads": [load.to_dict() for load in problem.loads]} if problem.loads != (OWN,) else {}),
         "samples": problem.samples,
         "unlimited": problem.unlimited,
         "keep": problem.keep,

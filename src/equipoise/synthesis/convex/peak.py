@@ -12,7 +12,7 @@ import numpy as np
 
 from ...kinematics import Tree, sample
 from ...model.arrays import Array
-from .least_squares_form import Gram, torque_rows
+from .least_squares_form import Gram, together, torque_rows
 from .polish import Parts, jacobian, residual
 from .semidefinite import Bound, least_peak
 
@@ -24,7 +24,7 @@ CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of th
 
 @dataclass(frozen=True)
 class Peak:
-    """The torques of a problem at random poses, one row per pose and coordinate.
+    """The torques of a problem at random poses, one row per load, pose and coordinate.
 
     Every torque is linear in the same few numbers ``w = gram.times(x)`` as the mean square, so a row is short.
 
@@ -43,18 +43,25 @@ class Peak:
         """The rows over random poses inside the joint ranges."""
         problem = gram.problem
         to_w = np.linalg.pinv(np.concatenate(gram.columns, axis=1))
-        L, load = [], []
         q = sample(Tree.of(problem.judged), problem.count, problem.seed)
-        for T, torque, _ in torque_rows(problem, gram.blocks, q):
-            L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(gram.d)))
-            load.append((torque * problem.scale).ravel())
-        every = np.concatenate(load)
+        each: list[tuple[Array, Array]] = []  # for every load
+        for loaded in together(problem):
+            L, loads = [], []
+            for T, torque, _ in torque_rows(gram.blocks, loaded, q):
+                L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(gram.d)))
+                loads.append((torque * problem.scale[:, None]).reshape(-1, len(loaded)))
+            each += [(np.concatenate(L), load) for load in np.concatenate(loads).T]
+        every = np.concatenate([load for _, load in each])
         unit = float(np.abs(every).max()) or 1.0
-        return Peak(gram, np.concatenate(L) / unit, every / unit, unit)
+        return Peak(gram, np.concatenate([L for L, _ in each]) / unit, every / unit, unit)
 
     def torque(self, parts: Parts) -> Array:
         """(rows,) torque with a set of parts (batch of 1)."""
         return self.L @ (residual(self.gram, parts)[0] - self.gram.d) + self.load
+
+    def of_loads(self, torque: Array) -> Array:
+        """(loads,) the largest of the torques (rows,) under each load."""
+        return np.abs(torque).reshape(len(self.gram.problem.loads), -1).max(axis=1)
 
     def bound(self) -> Bound:
         """The least peak that any parts of the blocks can leave at these poses."""

@@ -59,6 +59,13 @@ class Parts:
         """The sets after a `step` (batch, parts, 1 + shape): log amount, then shape, back to where it is possible."""
         return Parts.at(gram, self.block, self.k * np.exp(step[..., 0]), self.u + step[..., 1:])
 
+    def unknowns(self, gram: Gram) -> list[Array]:
+        """What the parts of a set (a batch of one) add up to, for each block (unknowns,)."""
+        x = [np.zeros(block.unknowns) for block in gram.blocks]
+        for own, at, number in by_block(gram, self.block):
+            x[number] = self.k[at] @ own.part(self.u[at, : own.shape])
+        return x
+
     def cost(self, gram: Gram) -> Array:
         """(batch,) what equal designs should have little of: mean stored energy, as a rule [J]."""
         each = np.empty(self.k.shape)
