@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, frozen
 from .coordinate import Coordinate
 from .energy.closed import ClosedEnergy
 from .energy.fourier import EXACT, FourierEnergy
@@ -47,7 +47,7 @@ class Certificate:
     reason: str | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class Loads:
     """Of each coordinate's holding torque [N m or N]: the largest magnitude and the root mean square, (n,) each."""
 
@@ -64,7 +64,7 @@ class SpringUse:
     max_force: float
 
 
-@dataclass(frozen=True)
+@frozen
 class Balance(Shown):
     """What is true of a mechanism with its springs.
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..energy.peak import climb
 from ..energy.potential import Potential
 from ..errors import InputError
@@ -19,7 +19,7 @@ from .pairs import Pairs
 TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
 
 
-@dataclass(frozen=True)
+@frozen
 class Gap:
     """The smallest distance between the surfaces of a spring and a capsule or another spring [m], and its pose (n,)."""
 

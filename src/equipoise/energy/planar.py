@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array, Complexes
+from ..arrays import Array, Complexes, frozen
 from ..errors import UnsupportedError
 from ..kinematics import Tree
 from ..mechanism import WORLD, Joint, Mechanism
@@ -52,7 +52,7 @@ class Installation:
         return self.k - self.i
 
 
-@dataclass(frozen=True)
+@frozen
 class PlanarArm:
     """A serial arm whose axes are all parallel.
 

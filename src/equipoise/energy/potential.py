@@ -10,12 +10,11 @@ generalised force of gravity and springs. A spring's mass is lumped at its ends.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..errors import InputError
 from ..kinematics.tree import Tree
 from ..mechanism import Mechanism
@@ -24,7 +23,7 @@ FEW = 32  # poses for which writing down a program does not pay
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 
 
-@dataclass(frozen=True)
+@frozen
 class State:
     """Everything about a batch of N configurations.
 

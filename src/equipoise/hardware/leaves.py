@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..balance import largest_share
 from ..energy.peak import climb
 from ..energy.potential import lumped_masses
@@ -16,7 +15,7 @@ from ..mechanism import Mechanism
 from .stretch import Stretch
 
 
-@dataclass(frozen=True)
+@frozen
 class Leaves:
     """Torques [N m or N] over the workspace, (n,) each.
 

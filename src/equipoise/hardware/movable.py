@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..errors import Fault, InputError, UnsupportedError
 from ..kinematics import Poses, Tree, sample
 from ..mechanism import Mechanism
@@ -25,7 +25,7 @@ RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
 
 
-@dataclass(frozen=True)
+@frozen
 class Ray:
     """Where an attachment may be: `origin` + distance `direction`, in the body's frame; `length` [m] is now."""
 

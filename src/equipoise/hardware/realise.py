@@ -21,7 +21,7 @@ from math import inf
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..balance import Balance
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
@@ -63,7 +63,7 @@ class Options:
     friction: Mapping[str, float] = field(default_factory=lambda: dict(FRICTION))
 
 
-@dataclass(frozen=True)
+@frozen
 class Realisation:
     """One way to make one spring of a design.
 

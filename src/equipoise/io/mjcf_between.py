@@ -6,12 +6,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..mechanism import Coupling, Loop
 from ..spring import Spring, Vec3
 from .text import Names
@@ -20,7 +19,7 @@ Places = dict[int, tuple[str, Array]]
 """A body of the engine: which body of ours has its frame, and where its origin is there (a point mass has none)."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Between:
     """Reads them; what has no counterpart is added to `faults`.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import frozen
 from ..errors import UnsupportedError
 from ..mechanism import WORLD, Joint, Mechanism
 from ..rotation import from_rpy
@@ -23,7 +24,7 @@ class Hinge:
     axis: Vec3
 
 
-@dataclass(frozen=True)
+@frozen
 class Replicas:
     """The child's orientation in the parent frame at zero, (3, 3), then the hinges that turn it, in this order."""
 

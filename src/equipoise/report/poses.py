@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..energy.potential import Potential, lumped_masses
 from ..kinematics import Poses, Tree, sample
 from ..kinematics.sampling import bounds, inside
@@ -21,7 +19,7 @@ HALF = 0.5  # of the heaviest pose's load: what the second pose is to have, so t
 PARALLEL = 1e-6
 
 
-@dataclass(frozen=True)
+@frozen
 class View:
     """A parallel projection: unit vectors (3,) in the world; `normal` points to the viewer, `vertical` against gravity.
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..mechanism import Mechanism
 
 What = Literal["p_a", "p_b", "free_length"]
@@ -24,7 +24,7 @@ class Handle:
     what: What
 
 
-@dataclass(frozen=True)
+@frozen
 class Move:
     """An attachment (3,) or free length (1,) [m] of a spring at the smallest and at the largest payload."""
 

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
@@ -79,7 +79,7 @@ class Parameter:
         return f"{self.item}: {self.value}"
 
 
-@dataclass(frozen=True)
+@frozen
 class Lump:
     """A mass at a point: numbers of its parameters; a spring's end scatters with its attachment, not in mass."""
 

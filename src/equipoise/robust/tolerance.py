@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..coordinate import Coordinate
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree, sample
@@ -24,7 +23,7 @@ CHUNK_ENTRIES = 1_500_000  # torques held at a time: they stay in the cache
 PERCENTILES = (5, 50, 95, 99)
 
 
-@dataclass(frozen=True)
+@frozen
 class Tolerance:
     """What scatter does to a design.
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..coordinate import Coordinate
 from ..errors import InputError
 from ..mechanism import Mechanism
 from .engine import Engine
 
 
-@dataclass(frozen=True)
+@frozen
 class Playback:
     """A motion, and what it takes.
 

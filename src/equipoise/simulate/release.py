@@ -7,12 +7,12 @@ soft, the one whose weakness the joints feel most: that must move.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..coordinate import Coordinate
 from ..errors import Fault, InputError
 from ..kinematics.sampling import sample
@@ -27,7 +27,7 @@ SOFT = 0.01  # share of its stiffness that the soft spring lacks
 MOVES = 10.0  # times the tolerance that the soft spring must move it at least
 
 
-@dataclass(frozen=True)
+@frozen
 class Drift:
     """What became of the released poses.
 
@@ -49,7 +49,7 @@ class Drift:
         return float(self.moved.max(initial=0.0))
 
 
-@dataclass(frozen=True)
+@frozen
 class Release:
     """The run, and its positive control.
 

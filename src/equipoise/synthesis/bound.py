@@ -8,12 +8,11 @@ point, so the optimum is a lower bound for every design on these pairs and regio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..errors import EquipoiseError
 from .gram import TRI, TRI_I, TRI_J, Gram, smat, svec
 
@@ -22,7 +21,7 @@ STALLED = 1e-4  # violation of the constraints that is still close to the optimu
 ENDS = ((0, 1, 2), (4, 5, 6))
 
 
-@dataclass(frozen=True)
+@frozen
 class Bound:
     """The least torque that any springs on the pairs can leave.
 

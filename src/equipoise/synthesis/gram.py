@@ -9,13 +9,13 @@ by an orthogonal reduction of samples, their number no longer matters.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Booleans, Complexes
+from ..arrays import Array, Booleans, Complexes, frozen
 from ..energy.fourier import gravity_series, spring_series
 from ..energy.frames import Frames, NoFourierForm
 from ..energy.potential import CHUNK_ENTRIES, Potential
@@ -46,7 +46,7 @@ def smat(v: Array) -> Array:
     return M
 
 
-@dataclass(frozen=True)
+@frozen
 class Gram:
     """The compressed problem, in units of the unbalanced torque.
 

@@ -6,11 +6,9 @@ poses is a bound for all, so stopping early never makes it wrong.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..kinematics import Tree, sample
 from .bound import Bound, least_peak
 from .gram import Gram, svec, torque_rows
@@ -22,7 +20,7 @@ ROUNDS = 12
 CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of the chosen ones
 
 
-@dataclass(frozen=True)
+@frozen
 class Peak:
     """The torques of a problem at random poses, one row per pose and coordinate.
 

@@ -6,16 +6,14 @@ one matrix, and its gradient comes with it. For fixed attachments it is a quadra
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from .gram import TRI_I, TRI_J, TRI_WEIGHT, Gram, svec
 from .polish import Springs, unit_torque
 
 
-@dataclass(frozen=True)
+@frozen
 class Quadratic:
     """``x' H x + 2 b' x + c``: the mean square torque over stiffnesses x [N/m], as a share of the unbalanced one."""
 

@@ -8,11 +8,10 @@ the worse end: the middle is the minimax choice, whatever the workspace.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..balance import check
 from ..errors import Fault, InputError, nearest
 from ..io.text import Names
@@ -22,7 +21,7 @@ from .bevel.shoulder import Shoulder
 from .given import number, vectors
 
 
-@dataclass(frozen=True)
+@frozen
 class Payload:
     """From `low` to `high` [kg] at `place` (3,) [m] in the frame of `link`; both zero without one."""
 

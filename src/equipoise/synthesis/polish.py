@@ -7,11 +7,9 @@ spend its time in overhead. Unknowns per spring: log stiffness, and both attachm
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..arrays import Array, Booleans, Integers
+from ..arrays import Array, Booleans, Integers, frozen
 from .gram import Gram
 
 ITERATIONS = 150
@@ -19,7 +17,7 @@ STALL = 1e-13  # residual norm (share of the unbalanced torque) that cannot be i
 LOG_RANGE = 14.0  # stiffness within e^+-14 of its scale
 
 
-@dataclass(frozen=True)
+@frozen
 class Springs:
     """A batch of spring sets: stiffness `k` (batch, springs) [N/m] and attachments `u` (batch, springs, 2, 3).
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, frozen
 from ..io import files
 from ..io.xmltree import Document, Element
 from ..rotation import from_rpy
@@ -17,7 +16,7 @@ from ..rotation import from_rpy
 PACKAGE = "package://"
 
 
-@dataclass(frozen=True)
+@frozen
 class Picture:
     """A mesh of `body`, with its place and orientation in the body's frame [m]."""
 

@@ -7,11 +7,9 @@ along C, y along B, and z away from the rods.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, frozen
 from ...energy.potential import lumped_masses
 from ...errors import UnsupportedError
 from ...kinematics import Tree
@@ -29,7 +27,7 @@ class NotDelta(UnsupportedError):
     """The mechanism is no DELTA robot that the method covers; the message says why."""
 
 
-@dataclass(frozen=True)
+@frozen
 class DeltaLeg:
     """One leg, as its springs need to know it.
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, frozen
 from ...errors import Fault, InputError
 from ...mechanism import Body, Coupling, Joint
 from ...rotation import to_rpy
@@ -90,7 +90,7 @@ class Guide:
         return self.frame + self.link_8 + self.link_9 + self.spring_10 + self.spring_11
 
 
-@dataclass(frozen=True)
+@frozen
 class TwoAxisRocker:
     """A rocker in a mechanism, as its guide needs to know it.
 

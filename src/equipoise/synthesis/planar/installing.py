@@ -17,7 +17,7 @@ from math import inf, log
 
 import numpy as np
 
-from ...arrays import Array, Booleans, Complexes
+from ...arrays import Array, Booleans, Complexes, frozen
 from ...energy.blocks import StiffnessBlocks
 from ...energy.planar import Installation, PlanarArm
 from .exclusion import Layout
@@ -240,7 +240,7 @@ class Equations:
         return min(found, key=lambda one: one.energy, default=None)
 
 
-@dataclass(frozen=True)
+@frozen
 class Solution:
     """Unknowns that satisfy the equations, and the springs that they stand for."""
 
