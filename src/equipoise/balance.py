@@ -19,7 +19,7 @@ from .energy.fourier.energy import EXACT, FourierEnergy
 from .energy.fourier.frames import MAX_TERMS
 from .energy.reference import State
 from .kinematics import Linkage, Mobility, Tree, sample
-from .model.arrays import Array
+from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.errors import InputError, NoFourierForm
 from .model.mechanism import Mechanism
@@ -48,7 +48,7 @@ class Certificate:
     reason: str | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class Loads:
     """Of each coordinate's holding torque [N m or N]: the largest magnitude and the root mean square, (n,) each."""
 
@@ -79,7 +79,7 @@ class SpringUse:
         return max(map(abs, self.force))
 
 
-@dataclass(frozen=True)
+@frozen
 class Balance(Shown):
     """What is true of a mechanism with its springs.
 

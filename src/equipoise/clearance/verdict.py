@@ -9,7 +9,7 @@ import numpy as np
 
 from ..energy.extremes import climb
 from ..kinematics import Tree, sample
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
@@ -20,7 +20,7 @@ TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
 NUMBERS = 40  # that are held for each pair and sample
 
 
-@dataclass(frozen=True)
+@frozen
 class Gap:
     """The smallest distance between the surfaces of a spring and a capsule or another spring [m], and its pose (n,)."""
 

@@ -8,20 +8,18 @@ generalised force of gravity and springs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..kinematics.tree import Tree
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.masses import lumped_masses
 from ..model.mechanism import Mechanism
 
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 
 
-@dataclass(frozen=True)
+@frozen
 class State:
     """Everything about a batch of N configurations.
 

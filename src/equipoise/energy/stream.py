@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
@@ -17,7 +16,7 @@ import numpy as np
 
 from ..kinematics.sampling import sample
 from ..kinematics.tree import Tree
-from ..model.arrays import Array, Integers
+from ..model.arrays import Array, Integers, frozen
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
 from ..model.mechanism import Mechanism
 from ..model.validate import whole_number
@@ -30,7 +29,7 @@ BINS = (HIGHEST - LOWEST) << FINE
 QUANTILES = (0.5, 0.9, 0.99, 0.999)
 
 
-@dataclass(frozen=True)
+@frozen
 class Statistics:
     """What is true of a stream of poses. Torques are magnitudes, per coordinate [N m or N].
 

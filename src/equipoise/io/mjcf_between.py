@@ -6,12 +6,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import Element, Spring, TorsionSpring, Vec3
 from ..model.mechanism import Coupling, Loop
 from .text import Names
@@ -20,7 +19,7 @@ Places = dict[int, tuple[str, Array]]
 """A body of the engine: which body of ours has its frame, and where its origin is there (a point mass has none)."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Between:
     """Reads them; what has no counterpart is added to `faults`.
 

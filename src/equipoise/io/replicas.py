@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..model.arrays import frozen
 from ..model.elements import Vec3
 from ..model.errors import UnsupportedError
 from ..model.mechanism import WORLD, Joint, Mechanism
@@ -23,7 +24,7 @@ class Hinge:
     axis: Vec3
 
 
-@dataclass(frozen=True)
+@frozen
 class Replicas:
     """The child's orientation in the parent frame at zero, (3, 3), then the hinges that turn it, in this order."""
 

@@ -6,13 +6,12 @@ Waypoints are closed poses all over the ranges, found from each other; every oth
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..model.arrays import Array, Booleans, Integers
+from ..model.arrays import Array, Booleans, Integers, frozen
 from ..model.mechanism import Body, Mechanism
 from . import assembly
 from .closure import Closure
@@ -42,7 +41,7 @@ class Status(IntEnum):
     SINGULAR = 2
 
 
-@dataclass(frozen=True)
+@frozen
 class Waypoints:
     """Closed poses `q` (K, n) with the tangents `T` (K, d, m) and Jacobians `J` (K, count, n) there."""
 

@@ -8,11 +8,9 @@ that does not count is halved.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..model.arrays import Array, Booleans, Integers
+from ..model.arrays import Array, Booleans, Integers, frozen
 from .closure import Closure
 
 CLOSED = 1e-13  # residual, as a share of the mechanism's size
@@ -23,7 +21,7 @@ SHORTEST = 0.002  # [rad, or share of the size] no shorter step is tried, but fo
 CHUNK_ENTRIES = 300_000  # velocities held at a time: what stays in a processor's cache
 
 
-@dataclass(frozen=True)
+@frozen
 class Split:
     """Which coordinates of the tree are independent (m of them) and which depend on them."""
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from .tree import Tree
 
 
-@dataclass(frozen=True)
+@frozen
 class Place:
     """Where a body is in its group: orientation `R` and origin `p` [m] in the frame of the body `root`.
 

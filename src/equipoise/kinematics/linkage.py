@@ -6,18 +6,16 @@ multiplied by dq/du. Poses that do not close are NaN in everything, so that no t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..model.arrays import Array, Integers
+from ..model.arrays import Array, Integers, frozen
 from ..model.mechanism import Mechanism
 from .branch import Branch
 from .continuation import tangent
 from .tree import Poses, Tree, Velocities
 
 
-@dataclass(frozen=True)
+@frozen
 class ClosedPoses(Poses):
     """Poses with the coordinates `q` (N, tree coordinates) [rad or m] they were computed from, NaN where not closed."""
 

@@ -8,19 +8,18 @@ is all there is to couplings.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..model.arrays import Array, Booleans, Integers
+from ..model.arrays import Array, Booleans, Integers, frozen
 from ..model.errors import InputError
 from ..model.mechanism import SINGLE, Joint, Mechanism
 from ..model.rotation import about, from_rpy, harmonics
 
 
-@dataclass(frozen=True)
+@frozen
 class Motion:
     """One elementary motion: a rotation about (or a translation along) the unit vector `axis`, by value `row` of s."""
 
@@ -29,7 +28,7 @@ class Motion:
     rotates: bool
 
 
-@dataclass(frozen=True)
+@frozen
 class Link:
     """How body `body` hangs on its parent: ``R_WB = R_W,base R0 R(motions)``, ``p_WB = p_W,parent + R_W,parent ...``.
 
@@ -50,7 +49,7 @@ class Link:
         return next((motion for motion in self.motions if not motion.rotates), None)
 
 
-@dataclass(frozen=True)
+@frozen
 class Poses:
     """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it.
 
@@ -66,7 +65,7 @@ class Poses:
         return self.p[:, body] + self.R[:, body] @ p
 
 
-@dataclass(frozen=True)
+@frozen
 class Velocities:
     """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate.
 

@@ -14,6 +14,7 @@ from typing import Any, Literal, get_args
 from .coordinate import Coordinate, Slide
 from .elements import Element, Vec3
 from .errors import InputError
+from .immutable import immutable
 from .validate import faults
 
 WORLD = "world"
@@ -127,6 +128,7 @@ class Mechanism:
     """Bodies, joints and what acts on them. Immutable; equal when all values are equal.
 
     Attributes:
+        provenance: how it was made, as a file says it: text, numbers, None, lists and mappings, all made immutable.
         independent: of a mechanism with loops, the coordinates that determine the others; chosen by itself when empty.
         assembly: coordinate values [rad or m] near a pose in which the loops close.
 
@@ -149,6 +151,7 @@ class Mechanism:
     capsules: tuple[Capsule, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "provenance", immutable(self.provenance))
         found = faults(self)
         if found:
             raise InputError(found)

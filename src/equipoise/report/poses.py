@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, sample
 from ..kinematics.sampling import bounds, inside
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.masses import lumped_masses
 from ..model.mechanism import Mechanism
 from .skeleton import Skeleton
@@ -22,7 +20,7 @@ HALF = 0.5  # of the heaviest pose's load: what the second pose is to have, so t
 PARALLEL = 1e-6
 
 
-@dataclass(frozen=True)
+@frozen
 class View:
     """A parallel projection: unit vectors (3,) in the world; `normal` points to the viewer, `vertical` against gravity.
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 
 Verdict = Literal["agrees", "differs", "erratum", "computed"]
 
@@ -95,7 +95,7 @@ def spread(f: Callable[..., float], printed: Sequence[str]) -> float:
     return total
 
 
-@dataclass(frozen=True)
+@frozen
 class Plot:
     """Curves over one axis: `series` maps a label to values (T,) over `x` (T,)."""
 
@@ -108,7 +108,7 @@ class Plot:
     note: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Map:
     """Values over two axes: `panels` maps a label to z (len(y), len(x)); NaN is left blank."""
 

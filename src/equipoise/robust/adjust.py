@@ -9,7 +9,7 @@ keeps the balance is the fewest springs that can, and of those it is the one tha
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..balance import Balance, check
 from ..energy.evaluate import Potential
 from ..energy.extremes import climb
 from ..kinematics import Tree, sample
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
@@ -36,7 +36,7 @@ SINGULAR = 1e-9  # of the largest: directions that do nothing
 EVERY_ATTACHMENT = Scatter(stiffness=0, attachment=1, mass=0, length=0)
 
 
-@dataclass(frozen=True)
+@frozen
 class Adjustment:
     """How a design follows a range of payloads, and the fixed design that is best over it.
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.mechanism import Mechanism
 
@@ -25,7 +25,7 @@ class Handle:
     what: What
 
 
-@dataclass(frozen=True)
+@frozen
 class Move:
     """An attachment (3,) or free length (1,) [m] of a spring at the smallest and at the largest payload."""
 

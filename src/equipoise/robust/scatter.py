@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ..kinematics import Tree
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
 from ..model.mechanism import Mechanism
@@ -80,7 +80,7 @@ class Parameter:
         return f"{self.item}: {self.value}"
 
 
-@dataclass(frozen=True)
+@frozen
 class Lump:
     """A mass at a point: numbers of its parameters; a spring's end scatters with its attachment, not in mass."""
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..kinematics import Tree, sample
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
@@ -25,7 +24,7 @@ CHUNK_ENTRIES = 1_500_000  # torques held at a time: they stay in the cache
 PERCENTILES = (5, 50, 95, 99)
 
 
-@dataclass(frozen=True)
+@frozen
 class Tolerance:
     """What scatter does to a design.
 

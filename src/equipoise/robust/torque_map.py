@@ -7,7 +7,6 @@ mass (THEORY section 1). The poses are compressed once; a build costs one small 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, Velocities
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.mechanism import Mechanism
 from ..model.rotation import skew
@@ -26,7 +25,7 @@ STEP = 1e-30  # of the complex step: what it differentiates are polynomials and 
 Numbers: TypeAlias = NDArray[Any]  # real, or complex for a derivative
 
 
-@dataclass(frozen=True)
+@frozen
 class Affine:
     """Coefficients ``c = start + x E'`` (builds, m) of pose-dependent columns: [an origin; a rotation each]."""
 
@@ -37,7 +36,7 @@ class Affine:
         return self.start + x @ self.E.T
 
 
-@dataclass(frozen=True)
+@frozen
 class Soft:
     """What a free length takes away, ``k L0 (dL^2/dq / 2) / L``: `length` (r, N), `rate` (r, n N), `W` (F, r)."""
 

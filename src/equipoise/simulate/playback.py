@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from .engine import Engine
 
 
-@dataclass(frozen=True)
+@frozen
 class Playback:
     """A motion, and what it takes.
 

@@ -7,13 +7,13 @@ soft, the one whose weakness the joints feel most: that must move.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..kinematics.sampling import sample
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError
 from ..model.mechanism import Mechanism
@@ -28,7 +28,7 @@ SOFT = 0.01  # share of its stiffness that the soft spring lacks
 MOVES = 10.0  # times the tolerance that the soft spring must move it at least
 
 
-@dataclass(frozen=True)
+@frozen
 class Drift:
     """What became of the released poses.
 
@@ -50,7 +50,7 @@ class Drift:
         return float(self.moved.max(initial=0.0))
 
 
-@dataclass(frozen=True)
+@frozen
 class Release:
     """The run, and its positive control.
 

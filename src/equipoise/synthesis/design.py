@@ -90,6 +90,7 @@ class Design(Shown):
             as it is.
         front: the best design for each number of springs, when it was asked for.
         ordinary: what was lost when the springs got a free length, or room.
+        judged: the verdict on `mechanism`, where making the design took one; of any other it says nothing.
     """
 
     mechanism: Mechanism
@@ -107,6 +108,7 @@ class Design(Shown):
     loads: tuple[LoadResidual, ...] = ()
     front: tuple[FrontRow, ...] = ()
     ordinary: Ordinary | None = None
+    judged: Balance | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
     def of(mechanism: Mechanism, method: str, free_parameters: Mapping[str, Any]) -> Design:
@@ -117,7 +119,7 @@ class Design(Shown):
         """
         balance = check(mechanism)
         residual, unbalanced = (sqrt(float(sum(load.rms**2))) for load in (balance.residual, balance.unbalanced))
-        design = Design(
+        return Design(
             mechanism=mechanism,
             method=method,
             objective="rms",
@@ -127,14 +129,17 @@ class Design(Shown):
             samples=balance.certificate.samples,
             free_parameters=free_parameters,
             exact_feasible=True if balance.exact else None,
+            judged=balance,
         ).with_provenance()
-        design.__dict__["balance"] = replace(balance, mechanism=design.mechanism)  # judged once
-        return design
 
     @cached_property
     def balance(self) -> Balance:
         """The verdict on the finished mechanism, computed from it alone."""
-        return check(self.mechanism)
+        return self._known or check(self.mechanism)
+
+    @property
+    def _known(self) -> Balance | None:
+        return self.judged if self.judged is not None and self.judged.mechanism is self.mechanism else None
 
     @property
     def certified_gap(self) -> float | None:
@@ -152,12 +157,11 @@ class Design(Shown):
         unbalanced = sqrt(float(sum(found.balance.unbalanced.rms**2)))
         samples = found.balance.certificate.samples
         given = {**self.free_parameters, "free_length": dict(found.free_length), **options}
-        design = replace(
+        return replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
             joints=None, averaged=False, samples=samples, loads=(), free_parameters=given, ordinary=found,
+            judged=found.balance,
         ).with_provenance()  # fmt: skip
-        design.__dict__["balance"] = replace(found.balance, mechanism=design.mechanism)  # judged once
-        return design
 
     def with_diameter(self, diameter: float) -> Design:
         """The same design with springs of an outer diameter [m]."""
@@ -176,7 +180,8 @@ class Design(Shown):
             "bound": self.bound,
             "certified_gap": self.certified_gap,
         }
-        return replace(self, mechanism=replace(self.mechanism, provenance=provenance))
+        mechanism, known = replace(self.mechanism, provenance=provenance), self._known
+        return replace(self, mechanism=mechanism, judged=known and replace(known, mechanism=mechanism))
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``equipoise design --json``."""

@@ -8,13 +8,12 @@ the worse end: the middle is the minimax choice, whatever the workspace.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..balance import check
 from ..io.text import Names
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import Element
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism, PointMass
@@ -23,7 +22,7 @@ from .given import number, vectors
 from .options import Number
 
 
-@dataclass(frozen=True)
+@frozen
 class Payload:
     """From `low` to `high` [kg] at `place` (3,) [m] in the frame of `link`; both zero without one."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +10,13 @@ import numpy as np
 
 from ..io import files
 from ..io.xmltree import Document, Element
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.rotation import from_rpy
 
 PACKAGE = "package://"
 
 
-@dataclass(frozen=True)
+@frozen
 class Picture:
     """A mesh of `body`, with its place and orientation in the body's frame [m]."""
 

@@ -7,15 +7,14 @@ each coordinate's frequency means is up to the caller.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.arrays import Complexes, Integers
+from ...model.arrays import Complexes, Integers, frozen
 
 
-@dataclass(frozen=True)
+@frozen
 class Series:
     """Terms `keys` (T, 2n), frequencies first, then degrees; `coef` (T, ...) complex. A term may occur twice."""
 

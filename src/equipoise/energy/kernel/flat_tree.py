@@ -14,7 +14,7 @@ from math import atan2, cos, hypot, sin
 import numpy as np
 
 from ...kinematics.tree import Link, Motion, Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.masses import lumped_masses
 from ...model.rotation import skew
 
@@ -29,7 +29,7 @@ class Turn:
     s: float = 0.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Frame:
     """``R_W,i = R_W,base Rz(alpha) Rx(beta) Rz(gamma) Rz(s_row)``."""
 
@@ -41,7 +41,7 @@ class Frame:
     gamma: Turn = Turn()
 
 
-@dataclass(frozen=True)
+@frozen
 class Step:
     """From an origin's parent to it, in `frame`: ``step + s_row slide`` [m]; `slide` is None where nothing slides."""
 
@@ -52,7 +52,7 @@ class Step:
     slide: Array | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class Seat:
     """A body: a point p of it is at ``p_origin + R_W,frame (c + E p)``."""
 
@@ -66,7 +66,7 @@ class Seat:
         return self.c + self.E @ p
 
 
-@dataclass
+@dataclass(eq=False)
 class Layout:
     """Frames and origins, number 0 of each the world's; `gravity` (3,) [m/s^2] in frame 0."""
 

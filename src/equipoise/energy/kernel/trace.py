@@ -8,11 +8,10 @@ and right angles cost nothing.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Integers
+from ...model.arrays import Array, Integers, frozen
 
 Value = float | int
 Vector = tuple[Value, Value, Value]
@@ -123,7 +122,7 @@ class Trace:
         return _Emitter(self._nodes, outputs).program()
 
 
-@dataclass(frozen=True)
+@frozen
 class Program:
     """Straight-line code: operation i is `code[i]` on the registers `a`, `b`, `c` and constants `k`, `m`, into `to`.
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...balance import largest_share
 from ...energy.extremes import climb
 from ...kinematics import Tree, sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import lines
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
 from .stretch import Stretch
 
 
-@dataclass(frozen=True)
+@frozen
 class Leaves:
     """Torques [N m or N] over the workspace, (n,) each.
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from ...balance import Balance
 from ...kinematics import Tree, sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring, lines
 from ...model.mechanism import Mechanism
 from ..sizing.limits import Limits
@@ -63,7 +63,7 @@ class Options:
     friction: Mapping[str, float] = field(default_factory=lambda: dict(FRICTION))
 
 
-@dataclass(frozen=True)
+@frozen
 class Realisation:
     """One way to make one spring of a design.
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...kinematics import Poses, Tree, sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, UnsupportedError
 from ...model.mechanism import Mechanism
@@ -25,7 +25,7 @@ RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
 
 
-@dataclass(frozen=True)
+@frozen
 class Ray:
     """Where an attachment may be: `origin` + distance `direction`, in the body's frame; `length` [m] is now."""
 

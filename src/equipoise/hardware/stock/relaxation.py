@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...model.arrays import Array, Integers
+from ...model.arrays import Array, Integers, frozen
 from ...model.errors import EquipoiseError
 from .movable import Movable
 
@@ -38,7 +38,7 @@ class OutOfTime(EquipoiseError):
     exit_code = 1
 
 
-@dataclass(frozen=True)
+@frozen
 class Pull:
     """A force that spring `spring` must stand: `terms` . [k, ka, kb] [N] is at most the largest force of its stock."""
 
@@ -46,7 +46,7 @@ class Pull:
     terms: Array
 
 
-@dataclass(frozen=True)
+@frozen
 class Solution:
     """What the program found: stock of each spring, distances (springs, 2), the cost and a bound of every cost."""
 
@@ -56,7 +56,7 @@ class Solution:
     bound: float
 
 
-@dataclass
+@dataclass(eq=False)
 class Relaxation:
     """The program; cells, pulls and exclusions are added as it goes.
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...kinematics import Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Vec3
 from ...model.errors import UnsupportedError
 from ...model.mechanism import Mechanism
@@ -23,7 +23,7 @@ from .moments import segments
 SAME = 1e-9  # of the mechanism's reach: closer points coincide
 
 
-@dataclass(frozen=True)
+@frozen
 class Pivot:
     """Where a joint turns: about the point `p` (3,) [m], or about the line through it along the unit vector `e`."""
 
@@ -48,7 +48,7 @@ class Pivot:
         return Pivot(meeting, None) if np.linalg.norm(meeting - other.p - t * other.e) <= near else None
 
 
-@dataclass(frozen=True)
+@frozen
 class ChainLink:
     """A link of the chain, at q = 0 in world coordinates.
 
@@ -186,7 +186,7 @@ def chain(mechanism: Mechanism) -> Chain:
     return Chain(mechanism, base, tuple(_links(stages, near)), near)
 
 
-@dataclass(frozen=True)
+@frozen
 class _Stage:
     """A joint and the link it turns: its hinges, what they share, mass [kg] and first moment [kg m] in the world."""
 

@@ -12,13 +12,12 @@ O_i to O_{i-1}: -r_i is the `tip` of the next link.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...kinematics import Tree
 from ...kinematics.groups import places
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.masses import lumped_masses
 from ...model.mechanism import Joint, Mechanism
 
@@ -30,7 +29,7 @@ Lump = tuple[float, Array]
 """A mass [kg] and where it is [m], from O_{i-1} along the axes of its link."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Segment:
     """Link i of an arm; vectors are along the axes of the body `name`, which stands for it.
 
@@ -69,7 +68,7 @@ class Segment:
         return float(np.ptp(self.ups @ moment)) > NOTHING * unit
 
 
-@dataclass(frozen=True)
+@frozen
 class Moment:
     """The point mass that stands for a link and what it carries: `mass` mu_i [kg], and mu_i sigma_i [kg m].
 

@@ -12,20 +12,19 @@ link itself, and what of the pitch link's moment lies along the pitch axis.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import atan2, pi
 
 import numpy as np
 
 from ...kinematics import Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.mechanism import Mechanism
 from .moments import NOTHING, Segment, moments, segments, slide_faults, upwards
 
 RIGHT = 1e-9  # how nearly axes have to be perpendicular, and (relative to the sizes) intersect
 
 
-@dataclass(frozen=True)
+@frozen
 class Shoulder:
     """A roll-pitch shoulder; vectors of a link are along the axes of the body that stands for it.
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -17,12 +16,12 @@ import numpy as np
 from ...energy.fourier.frames import Frames
 from ...energy.fourier.series import Series
 from ...kinematics import Poses, Tree, Velocities
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.mechanism import Mechanism
 from ..region import RIM
 
 
-@dataclass(frozen=True)
+@frozen
 class Cone:
     """``F x + g`` lies in a cone: F (rows, unknowns), g (rows,), zero when None.
 

@@ -8,7 +8,7 @@ Fourier series exactly or by an orthogonal reduction of samples, their number no
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +20,7 @@ from ...energy.fourier.series import Series
 from ...energy.reference import CHUNK_ENTRIES
 from ...kinematics import Tree, sample
 from ...kinematics.sampling import whole_turns
-from ...model.arrays import Array, Complexes
+from ...model.arrays import Array, Complexes, frozen
 from ...model.errors import InputError, NoFourierForm
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress
@@ -30,7 +30,7 @@ from .blocks import Block
 RANK = 1e-12  # singular values below this share of the largest are rounding
 
 
-@dataclass(frozen=True)
+@frozen
 class Case:
     """One load by itself: ``|sum_b columns_b x_b + load|`` is its root mean square torque [N m] at unknowns x_b."""
 
@@ -42,7 +42,7 @@ class Case:
         return float(np.linalg.norm(sum((A @ own for A, own in zip(self.columns, x, strict=True)), self.load)))
 
 
-@dataclass(frozen=True)
+@frozen
 class Gram:
     """The compressed problem, in units of the unbalanced torque.
 

@@ -6,16 +6,14 @@ products with one matrix, and its gradient comes with it. For fixed shapes it is
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from .least_squares_form import Gram
 from .polish import Parts, by_block, unit_torque
 
 
-@dataclass(frozen=True)
+@frozen
 class Quadratic:
     """``x' H x + 2 b' x + c``: the mean square torque over amounts x, as a share of the unbalanced one."""
 

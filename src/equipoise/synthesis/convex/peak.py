@@ -6,12 +6,10 @@ poses is a bound for all, so stopping early never makes it wrong.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...kinematics import Tree, sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from .least_squares_form import Gram, together, torque_rows
 from .polish import Parts, jacobian, residual
 from .semidefinite import Bound, least_peak
@@ -22,7 +20,7 @@ ROUNDS = 12
 CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of the chosen ones
 
 
-@dataclass(frozen=True)
+@frozen
 class Peak:
     """The torques of a problem at random poses, one row per load, pose and coordinate.
 

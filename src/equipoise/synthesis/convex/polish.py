@@ -8,11 +8,10 @@ spend its time in overhead. Unknowns per part: the logarithm of its amount, and 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Booleans, Integers
+from ...model.arrays import Array, Booleans, Integers, frozen
 from .blocks import Block
 from .least_squares_form import Gram
 
@@ -21,7 +20,7 @@ STALL = 1e-13  # residual norm (share of the unbalanced torque) that cannot be i
 LOG_RANGE = 14.0  # an amount stays within e^+-14 of where it starts
 
 
-@dataclass(frozen=True)
+@frozen
 class Parts:
     """A batch of sets of parts.
 

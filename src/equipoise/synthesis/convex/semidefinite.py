@@ -7,20 +7,19 @@ is a lower bound for every design on these blocks.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import isqrt
 from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Array, Integers
+from ...model.arrays import Array, Integers, frozen
 from ...model.errors import EquipoiseError
 from .least_squares_form import Gram
 
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
 
-@dataclass(frozen=True)
+@frozen
 class Bound:
     """The least torque that any parts of the blocks can leave.
 

@@ -7,15 +7,13 @@ along C, y along B, and z away from the rods.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...kinematics import Tree
 from ...kinematics.groups import Place, places
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Link
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.errors import UnsupportedError
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
@@ -29,7 +27,7 @@ class NotDelta(UnsupportedError):
     """The mechanism is no DELTA robot that the method covers; the message says why."""
 
 
-@dataclass(frozen=True)
+@frozen
 class DeltaLeg:
     """One leg, as its springs need to know it.
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring, Vec3
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Body, Coupling, Joint
@@ -90,7 +90,7 @@ class Guide:
         return self.frame + self.link_8 + self.link_9 + self.spring_10 + self.spring_11
 
 
-@dataclass(frozen=True)
+@frozen
 class TwoAxisRocker:
     """A rocker in a mechanism, as its guide needs to know it.
 

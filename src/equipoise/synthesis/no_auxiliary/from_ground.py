@@ -13,11 +13,10 @@ All that reach link j > i pass link i with the same l_i, so that the first is su
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring
 from ..arms.chain import Chain, ChainLink
 
@@ -42,7 +41,7 @@ def fewest_springs(chain: Chain) -> int:
     return 1 + sum(2 if link.off_line(chain.near) else 1 for link in inner)
 
 
-@dataclass(frozen=True)
+@frozen
 class _End:
     """A spring from `height` [m] above the first joint to `p` (3,) [m] from the centre of a link."""
 

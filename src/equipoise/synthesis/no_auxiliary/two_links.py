@@ -16,12 +16,11 @@ line leaves.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring
 from ...model.errors import InfeasibleError
 from ..arms.chain import Chain, ChainLink
@@ -36,7 +35,7 @@ PAST = "b12 - l1"  # how far spring k12 starts past the elbow
 _SIGNED = ("a12", PAST, "b2")
 
 
-@dataclass(frozen=True)
+@frozen
 class TwoLinks:
     """The two loaded links of a chain, and how large attachments on them are by default.
 

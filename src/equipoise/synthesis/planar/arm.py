@@ -21,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...kinematics import Tree
-from ...model.arrays import Array, Complexes
+from ...model.arrays import Array, Complexes, frozen
 from ...model.elements import Spring, Vec3, lines
 from ...model.errors import UnsupportedError
 from ...model.masses import lumped_masses
@@ -52,7 +52,7 @@ class Installation:
         return self.k - self.i
 
 
-@dataclass(frozen=True)
+@frozen
 class PlanarArm:
     """A serial arm whose axes are all parallel.
 

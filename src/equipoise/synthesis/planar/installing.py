@@ -17,7 +17,7 @@ from math import inf, log
 
 import numpy as np
 
-from ...model.arrays import Array, Booleans, Complexes
+from ...model.arrays import Array, Booleans, Complexes, frozen
 from .arm import Installation, PlanarArm
 from .exclusion import Layout
 from .stiffness_blocks import StiffnessBlocks
@@ -240,7 +240,7 @@ class Equations:
         return min(found, key=lambda one: one.energy, default=None)
 
 
-@dataclass(frozen=True)
+@frozen
 class Solution:
     """Unknowns that satisfy the equations, and the springs that they stand for."""
 

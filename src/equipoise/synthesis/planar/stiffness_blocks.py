@@ -8,17 +8,16 @@ paper is a rotation times a factor, so one complex number: 1 stands for I, i for
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import reduce
 from operator import add
 
 import numpy as np
 
-from ...model.arrays import Complexes
+from ...model.arrays import Complexes, frozen
 from .arm import Installation, PlanarArm
 
 
-@dataclass(frozen=True)
+@frozen
 class StiffnessBlocks:
     """Hermitian matrix `K` (n, n) of blocks [N/m]; the ground's row is [N], as x_1 is a bare direction."""
 

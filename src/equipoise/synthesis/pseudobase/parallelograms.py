@@ -13,14 +13,14 @@ it may spin about that line: its mass centre and the spring's end lie on it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import Spring, Vec3
 from ...model.mechanism import Body, Joint, Loop, Mechanism
 from ...model.rotation import to_rpy
@@ -29,7 +29,7 @@ from ..arms.moments import Lump, Moment, Segment, upwards
 POSES = 64  # of which the one with the widest parallelograms is where real joints are assembled
 
 
-@dataclass(frozen=True)
+@frozen
 class Module:
     """A parallelogram O_{i-1} C_i D_i O^_{i-1}: link i, its pseudobase (the coupler C_i D_i) and its auxiliary link.
 
