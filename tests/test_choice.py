@@ -9,12 +9,12 @@ import pytest
 from robots import lee_chen_springs
 
 import equipoise as eq
+from equipoise.cli.terminal import solver_aside
 from equipoise.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.hardware import Stock, choose
 from equipoise.hardware.choice import shortest
 from equipoise.hardware.made_up import made_up_catalogue
 from equipoise.hardware.movable import Movable, Travel
-from equipoise.hardware.relaxation import _solver_speaks_to_stderr
 
 R2 = R3 = 0.180
 G2, G3, G4 = ((0.5 * 0.848 + 0.848 + 1.330) * 9.81, (0.5 * 0.848 + 1.330) * 9.81, 0.060 * 1.330 * 9.81)
@@ -192,7 +192,7 @@ def test_a_ur5_keeps_its_balance_with_other_rates() -> None:
 
 
 def test_what_the_solver_prints_does_not_spoil_the_answer(capfd) -> None:
-    with _solver_speaks_to_stderr():
+    with solver_aside():
         os.write(1, b"a line of the solver")  # as its compiled code does
     print("the answer")
     out, err = capfd.readouterr()

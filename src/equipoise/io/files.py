@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
+from secrets import token_hex
 
 from ..errors import Fault, InputError
 
@@ -102,24 +102,19 @@ def _special(name: str) -> bool:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
-    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".tmp", dir=target.parent)
+    temporary = target.with_name(f".{target.name[:100]}.{token_hex(8)}.tmp")
+    stream = open(temporary, "xb")  # noqa: SIM115  # what cannot be opened must not be removed either
     try:
-        with open(handle, "wb") as stream:
+        with stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        os.chmod(temporary, mode)
+        if target.exists():
+            os.chmod(temporary, target.stat().st_mode & 0o7777)
         os.replace(temporary, target)
     except BaseException:  # also when interrupted: nothing is left behind
         os.unlink(temporary)
         raise
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)  # the only portable way to read it is to set it
-    os.umask(mask)
-    return mask
 
 
 def _reason(error: Exception) -> str:
