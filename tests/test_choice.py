@@ -9,10 +9,10 @@ import pytest
 from robots import lee_chen_springs
 
 import equipoise as eq
+from equipoise.cli.terminal import solver_aside
 from equipoise.hardware import Stock, choose
 from equipoise.hardware.stock.made_up import made_up_catalogue
 from equipoise.hardware.stock.movable import Movable, Travel
-from equipoise.hardware.stock.relaxation import _solver_speaks_to_stderr
 from equipoise.hardware.stock.selection import shortest
 from equipoise.model.errors import InfeasibleError, InputError, UnsupportedError
 
@@ -192,7 +192,7 @@ def test_a_ur5_keeps_its_balance_with_other_rates() -> None:
 
 
 def test_what_the_solver_prints_does_not_spoil_the_answer(capfd) -> None:
-    with _solver_speaks_to_stderr():
+    with solver_aside():
         os.write(1, b"a line of the solver")  # as its compiled code does
     print("the answer")
     out, err = capfd.readouterr()

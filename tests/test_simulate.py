@@ -1,14 +1,19 @@
 """Simulation in MuJoCo: what is exact stays where it is left, what is not moves, motions take what mechanics says."""
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's names come from a compiled module that ships no type stubs)
+
 from __future__ import annotations
 
 import json
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 from loop_zoo import four_bar
@@ -22,6 +27,7 @@ from equipoise.kinematics.sampling import sample
 from equipoise.model.errors import EquipoiseWarning, InputError
 from equipoise.reproduce import cho2012, lin2010
 from equipoise.simulate import Engine, EngineError, play, release
+from equipoise.simulate.quiet import quiet
 from equipoise.synthesis.delta.robot import DeltaRobot
 
 SPHERE = 0.05  # [m]
@@ -273,11 +279,14 @@ def test_a_pose_outside_the_limits_is_named():
         engine.place(np.array([-1.0]))
 
 
-def test_a_simulation_that_diverges_says_where():
+def diverging() -> eq.Mechanism:
     m = pendulum(stiffness=1e13)
-    light = replace(m, bodies=(replace(m.bodies[0], mass=1e-6, inertia=(1e-12, 1e-12, 1e-12, 0, 0, 0)),))
+    return replace(m, bodies=(replace(m.bodies[0], mass=1e-6, inertia=(1e-12, 1e-12, 1e-12, 0, 0, 0)),))
+
+
+def test_a_simulation_that_diverges_says_where():
     with pytest.raises(EngineError, match=r"diverged at .* s, first at body 'arm' .joint 'shoulder'."):
-        release(light, seconds=1, poses=1, control=False)
+        release(diverging(), seconds=1, poses=1, control=False)
 
 
 @pytest.mark.parametrize(("option", "value"), [("seconds", 0), ("tolerance", -1), ("poses", 0)])
@@ -393,3 +402,29 @@ def test_command_line_refuses(run, options, message):
     code, text, error = run("simulate", PENDULUM, *options)
     assert (code, text) == (2, "")
     assert message in error
+
+
+def test_the_engine_leaves_the_process_as_it_was(tmp_path, monkeypatch):
+    """Its own warnings go nowhere else while it works, whoever works beside it; the hook of others is back then."""
+    monkeypatch.chdir(tmp_path)
+    heard: list[str] = []
+
+    def hook(message):
+        heard.append(message)
+
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(hook)
+    try:
+        with quiet(mujoco):
+            with quiet(mujoco):
+                assert mujoco.get_mju_user_warning() is not hook
+            assert mujoco.get_mju_user_warning() is not hook
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda seed: release(pendulum(), seconds=0.05, poses=2, seed=seed, radius=0.05), range(8)))
+        with pytest.raises(EngineError):
+            release(diverging(), seconds=1, poses=1, control=False)
+        assert mujoco.get_mju_user_warning() is hook
+    finally:
+        mujoco.set_mju_user_warning(before)
+    assert heard == []
+    assert list(tmp_path.iterdir()) == []

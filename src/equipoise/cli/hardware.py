@@ -114,7 +114,7 @@ def stock(
     springs = read_catalogue(catalogue, columns)
     if output:
         check_savable(output)
-    with terminal.progress_bar("judging the design") as report:
+    with terminal.progress_bar("judging the design") as report, terminal.solver_aside():
         before = check(mechanism)
         found = choose(before, springs, goal=goal, travel=limits, seconds=seconds, progress=report)  # type: ignore[arg-type]
         after = check(found.mechanism)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -55,6 +57,19 @@ def progress_bar(start: str) -> Iterator[Progress]:
     with progress.Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
         task = bar.add_task(start, total=1.0)
         yield lambda what, share: bar.update(task, description=what, completed=share, total=1.0 if share else None)
+
+
+@contextmanager
+def solver_aside() -> Iterator[None]:
+    """A solver prints lines of its own to the file number 1, now and then: to standard error with them."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        os.dup2(2, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def show(lines: Iterator[Any]) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import stat
-import tempfile
 from contextlib import suppress
 from pathlib import Path
+from secrets import token_hex
 from typing import IO
 
 from ..model.errors import Fault, InputError
@@ -130,7 +130,6 @@ def _special(name: str) -> bool:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
     _clear(target.parent)
     stream, temporary = _temporary(target)
     try:
@@ -140,7 +139,8 @@ def _replace(target: Path, data: bytes) -> None:
             os.fsync(stream.fileno())
             if fcntl is None:
                 stream.close()  # Windows moves no open file
-            os.chmod(temporary, mode)
+            if target.exists():
+                os.chmod(temporary, target.stat().st_mode & 0o7777)
             os.replace(temporary, target)
     except BaseException:  # also when interrupted: nothing is left behind
         with suppress(FileNotFoundError):
@@ -151,8 +151,8 @@ def _replace(target: Path, data: bytes) -> None:
 def _temporary(target: Path) -> tuple[IO[bytes], str]:
     """A new file beside the target; who writes it holds its lock, so that others can tell it from a leftover."""
     while True:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=OURS, dir=target.parent)
-        stream = open(handle, "wb")  # noqa: SIM115  # the caller closes it
+        name = str(target.with_name(f".{target.name[:100]}.{token_hex(8)}{OURS}"))
+        stream = open(name, "xb")  # noqa: SIM115  # the caller closes it
         if fcntl is None:
             return stream, name
         with suppress(OSError):  # a file system without locks: others cannot lock it either, and leave it alone
@@ -170,12 +170,6 @@ def _clear(folder: Path) -> None:
         with suppress(OSError), open(path, "rb", opener=_unblocked) as stream:
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
             path.unlink()
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)  # the only portable way to read it is to set it
-    os.umask(mask)
-    return mask
 
 
 def _reason(error: Exception) -> str:

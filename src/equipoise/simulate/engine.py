@@ -23,6 +23,7 @@ from ..model.arrays import Array
 from ..model.errors import EquipoiseError, Fault, InputError
 from ..model.mechanism import Mechanism
 from ..model.rotation import about, ball_angles, from_quaternion
+from .quiet import quiet
 
 TIMESTEP = {False: 1e-3, True: 1e-4}  # [s] without and with equalities, which are stiff
 SOLREF = (2e-4, 1.0)  # time constant [s] (two steps, the least that is stable) and damping ratio of equalities
@@ -80,7 +81,6 @@ class Engine:
             message = "MuJoCo is not installed; it comes with: pip install 'equipoise[sim]'"
             raise InputError(message) from None
         self._mj: Any = mujoco
-        mujoco.set_mju_user_warning(lambda message: None)  # counted in `data.warning`; else it writes a log file
         self.mechanism = mechanism
         self.tree = Tree.of(mechanism)
         unknown = [body.name for body in mechanism.bodies if body.mass and body.inertia is None]
@@ -99,7 +99,8 @@ class Engine:
         self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies))))
         self.data = mujoco.MjData(self.model)
         self._joints = mjcf.joint_map(mechanism)
-        self.settings = self._prepare()
+        with quiet(mujoco):
+            self.settings = self._prepare()
 
     def _prepare(self) -> Settings:
         mj, model = self._mj, self.model
@@ -160,7 +161,8 @@ class Engine:
         for name, joint in self._joints.items():
             own, address = joint.qpos(values), self.model.joint(name).qposadr[0]
             self.data.qpos[address : address + len(own)] = own
-        self._mj.mj_forward(self.model, self.data)
+        with quiet(self._mj):
+            self._mj.mj_forward(self.model, self.data)
 
     def values(self, q: Array) -> dict[str, float]:
         """The coordinates of the spanning tree at independent ones `q` (n,); those inside their ranges only."""
@@ -247,7 +249,8 @@ class Engine:
             EngineError: it diverged; the message says which joint first.
         """
         steps = max(1, round(seconds / self.model.opt.timestep))
-        self._mj.mj_step(self.model, self.data, nstep=steps)
+        with quiet(self._mj):
+            self._mj.mj_step(self.model, self.data, nstep=steps)
         bad = ~np.isfinite(self.data.qvel) | (np.abs(self.data.qvel) > 1e6)
         if bad.any() or self.data.warning[int(self._mj.mjtWarning.mjWARN_BADQACC)].number:
             dof = int(np.argmax(bad)) if bad.any() else 0

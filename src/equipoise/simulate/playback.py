@@ -11,6 +11,7 @@ from ..model.coordinate import Coordinate
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from .engine import Engine
+from .quiet import quiet
 
 
 @frozen
@@ -98,7 +99,8 @@ def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, 
     torques, potential, kinetic = [], [], []
     for qpos, qvel, qacc in zip(placed, velocity, acceleration, strict=True):
         data.qpos[:], data.qvel[:] = qpos, qvel
-        mj.mj_forward(model, data)
+        with quiet(mj):
+            mj.mj_forward(model, data)
         inertial = np.zeros(model.nv)
         mj.mj_mulM(model, data, inertial, qacc)
         dry = model.dof_frictionloss * np.sign(qvel)

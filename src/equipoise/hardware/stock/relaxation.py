@@ -12,10 +12,7 @@ All distances and stiffnesses are relative to the design's.
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -112,33 +109,19 @@ class Relaxation:
             options["time_limit"] = max(seconds, 0.1)
         # scipy takes arrays here; its stubs want one number
         constraint = LinearConstraint(program.matrix(), np.array(program.low), np.array(program.high))  # type: ignore[arg-type]
-        with _solver_speaks_to_stderr():
-            found = milp(
-                program.objective,
-                constraints=constraint,
-                integrality=program.integer,
-                bounds=program.bounds,
-                options=options,
-            )
+        found = milp(
+            program.objective,
+            constraints=constraint,
+            integrality=program.integer,
+            bounds=program.bounds,
+            options=options,
+        )
         if found.status == 2:
             return None
         if found.x is None:
             raise OutOfTime("no solution was found in the time")
         bound = found.mip_dual_bound if found.mip_dual_bound is not None else found.fun
         return program.read(found.x, float(found.fun), float(bound))
-
-
-@contextmanager
-def _solver_speaks_to_stderr() -> Iterator[None]:
-    """The solver prints lines of its own to the file number 1, now and then, which would spoil an answer in JSON."""
-    sys.stdout.flush()
-    kept = os.dup(1)
-    try:
-        os.dup2(2, 1)
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
 
 
 FINEST = 1e-4  # relative width of the smallest cell
