@@ -5,10 +5,11 @@ PYTHON ?=
 BIN := .venv/bin
 STAMP := .venv/.stamp
 PIP := -m pip --disable-pip-version-check --quiet
+PYTEST := $(BIN)/python -m pytest
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-fast lint format docs bench bare constraints clean
+.PHONY: help demo test test-all deep lint format docs bench bare constraints clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -25,18 +26,22 @@ $(STAMP): pyproject.toml constraints.txt
 	fi; \
 	echo "Setting up .venv with $$("$$found" --version) and the pinned dependencies: a minute or two"; \
 	"$$found" -m venv .venv
-	@$(BIN)/python $(PIP) install -c constraints.txt hatchling editables
-	@$(BIN)/python $(PIP) install -c constraints.txt --no-build-isolation -e '.[dev]'
+	@$(BIN)/python $(PIP) install -c constraints.txt pip hatchling editables
+	@$(BIN)/python $(PIP) install -c constraints.txt --no-build-isolation -e '.[cad,report,sim,study,view]' --group dev
 	@touch $@
 
 demo: $(STAMP) ## the main job on a real robot, start to finish
 	@$(BIN)/equipoise demo
 
-test: $(STAMP) ## all tests
-	$(BIN)/python -m pytest -n 2
+test: $(STAMP) ## the tests, but for slow ones, those in a browser and campaigns
+	$(PYTEST) -n 2 -m "not slow and not browser and not deep"
 
-test-fast: $(STAMP) ## the tests that are not marked slow
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+test-all: $(STAMP) ## all tests; those in a browser afterwards, one at a time
+	$(PYTEST) -n 2 -m "not browser"
+	$(PYTEST) -m browser
+
+deep: $(STAMP) ## long campaigns: twenty times what test-all tries of them
+	EQUIPOISE_DEEP=1 $(PYTEST) -n 2 -m deep
 
 lint: $(STAMP) ## style, format, types, import contracts and circles
 	$(BIN)/ruff check
@@ -68,10 +73,11 @@ bare: $(STAMP) ## install the wheel without extras into a throw-away environment
 	venv/bin/equipoise --help
 
 constraints: $(STAMP) ## compile constraints.txt anew from pyproject.toml (add UPGRADE=1 for the newest versions)
-	@CUSTOM_COMPILE_COMMAND='make constraints' $(BIN)/pip-compile --quiet $(if $(UPGRADE),--upgrade) \
-		--all-extras --build-deps-for editable --build-deps-for wheel --strip-extras --no-annotate \
+	@$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"]["dev"], sep="\n")' | \
+	CUSTOM_COMPILE_COMMAND='make constraints' $(BIN)/pip-compile --quiet $(if $(UPGRADE),--upgrade) \
+		--all-extras --allow-unsafe --strip-extras --no-annotate \
 		--no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
-		--output-file constraints.txt pyproject.toml
+		--output-file constraints.txt pyproject.toml -
 
 clean: ## remove what the other targets made
 	rm -rf .venv docs/_build docs/_generated build dist .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache

@@ -7,9 +7,36 @@ import sys
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # workers that each use all cores wait for each other
 
+from collections.abc import Iterator
+from typing import Any
+
 import pytest
+from browser import chromium
+from campaign import SHARE
+from hypothesis import HealthCheck, settings
 
 from equipoise import cli
+
+# a slow machine is no fault, and the examples are the same each time, but in campaigns
+settings.register_profile("steady", deadline=None, derandomize=SHARE > 1, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("steady")
+
+
+@pytest.hookimpl(tryfirst=True)  # before -m chooses
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.browser)
+        for mark in item.iter_markers("slow"):
+            if not mark.kwargs.get("reason"):
+                raise pytest.UsageError(f"{item.nodeid} does not say why: @pytest.mark.slow(reason=...)")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """One for all: a test opens pages in it."""
+    with chromium() as found:
+        yield found
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Random valid mechanisms of realistic size: trees of every kind of joint, with couplings, springs and masses."""
+"""Random valid mechanisms of realistic size: trees of every kind of joint, couplings, springs and masses; chains."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from equipoise.model.elements import Spring, TorsionSpring, Vec3
-from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass
+from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass, Workspace
 
 RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
 
@@ -70,6 +70,37 @@ def with_torsion(m: Mechanism, seed: int) -> Mechanism:
 def random_poses(mechanism: Mechanism, count: int, seed: int = 0) -> np.ndarray:
     """Configurations (count, n), whatever the joint ranges: -2 to 2 rad or m."""
     return np.random.default_rng(seed).uniform(-2, 2, (count, len(mechanism.coordinates)))
+
+
+def random_chain(seed: int, links: int, kinds: tuple[str, ...], on_line: bool = False) -> Mechanism:
+    """Random links, hinges with random axes or ball joints, a payload and a body held by a fixed joint.
+
+    With `on_line` every mass centre is on the line to the next joint, ahead of its own joint or a little behind.
+    """
+    rng = np.random.default_rng(seed)
+
+    def vector(size: float) -> tuple[float, float, float]:
+        x, y, z = rng.uniform(-size, size, 3).tolist()
+        return x, y, z
+
+    bodies, joints = [], []
+    parent, xyz = "world", vector(0.3)
+    for i in range(links):
+        end = vector(0.5)
+        share = float(rng.uniform(-0.2, 1))
+        x, y, z = (share * e for e in end)
+        bodies.append(Body(f"b{i}", float(rng.uniform(0.5, 3)), (x, y, z) if on_line else vector(0.3)))
+        joints.append(Joint(f"j{i}", str(rng.choice(kinds)), parent, f"b{i}", xyz, vector(pi), vector(1)))  # type: ignore[arg-type]
+        parent, xyz = f"b{i}", end
+    hand = Joint("wrist", "fixed", parent, "hand", xyz, vector(pi))
+    return Mechanism(
+        "random chain",
+        (*bodies, Body("hand", 0.3, vector(0.1))),
+        (*joints, hand),
+        masses=(PointMass("load", parent, 0.5, vector(0.3)),),
+        gravity=vector(10),
+        workspace=Workspace(100),
+    )
 
 
 def _joint(rng: np.random.Generator, i: int, kind: str, placed: list[str]) -> Joint:

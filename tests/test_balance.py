@@ -7,9 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from odd_mechanisms import coupled, turret
 from random_mechanisms import random_mechanism
-from test_fourier import turret
-from test_kinematics import coupled
 from zoo import PENDULUM_K, ZOO, hinge, irrational_pair, pendulum, to_ground, vertical_slide
 
 from equipoise import Balance, check

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from in_mujoco import set_pose
 from robots import lee_chen, robot
 from scipy.spatial.transform import Rotation
-from test_mjcf import set_pose
 from zoo import counterweight, exact_pendulum
 
 import equipoise as eq

@@ -9,43 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_mechanisms import random_chain
 from robots import planar_arm, robot
 from zoo import counterweight, gantry, lenzo_revolute, lenzo_spherical, mirrored_pair, parallelogram_lamp
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
 from equipoise.synthesis.arms.chain import chain, reasons
-
-
-def random_chain(seed: int, links: int, kinds: tuple[str, ...], on_line: bool = False) -> eq.Mechanism:
-    """Random links, hinges with random axes or ball joints, a payload and a body held by a fixed joint.
-
-    With `on_line` every mass centre is on the line to the next joint, ahead of its own joint or a little behind.
-    """
-    rng = np.random.default_rng(seed)
-
-    def vector(size: float) -> tuple[float, float, float]:
-        x, y, z = rng.uniform(-size, size, 3).tolist()
-        return x, y, z
-
-    bodies, joints = [], []
-    parent, xyz = "world", vector(0.3)
-    for i in range(links):
-        end = vector(0.5)
-        share = float(rng.uniform(-0.2, 1))
-        x, y, z = (share * e for e in end)
-        bodies.append(eq.Body(f"b{i}", float(rng.uniform(0.5, 3)), (x, y, z) if on_line else vector(0.3)))
-        joints.append(eq.Joint(f"j{i}", str(rng.choice(kinds)), parent, f"b{i}", xyz, vector(pi), vector(1)))  # type: ignore[arg-type]
-        parent, xyz = f"b{i}", end
-    hand = eq.Joint("wrist", "fixed", parent, "hand", xyz, vector(pi))
-    return eq.Mechanism(
-        "random chain",
-        (*bodies, eq.Body("hand", 0.3, vector(0.1))),
-        (*joints, hand),
-        masses=(eq.PointMass("load", parent, 0.5, vector(0.3)),),
-        gravity=vector(10),
-        workspace=eq.Workspace(100),
-    )
 
 
 def moment_energy(m: eq.Mechanism, q: np.ndarray) -> np.ndarray:

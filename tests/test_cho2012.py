@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from math import cos, sin
 
 import numpy as np
 import pytest
-from test_examples import FOLDER, flat
+from example_files import FOLDER, same
 
 import equipoise as eq
 from equipoise.reproduce import Map, reproduce
@@ -109,11 +108,7 @@ def test_maps_over_the_hemisphere(paper):
     ("file", "mechanism"), [("bevel_shoulder", shoulder()), ("bevel_balanced", balanced().mechanism)]
 )
 def test_examples(file, mechanism):
-    found, expected = flat(asdict(eq.load(FOLDER / f"{file}.yaml"))), flat(asdict(mechanism))
-    found, expected = ({k: v for k, v in x.items() if not k.startswith(".provenance")} for x in (found, expected))
-    assert found.keys() == expected.keys()
-    for key, value in expected.items():
-        assert found[key] == (pytest.approx(value, rel=1e-12, abs=1e-15) if isinstance(value, float) else value), key
+    same(eq.load(FOLDER / f"{file}.yaml"), mechanism, 1e-12, 1e-15, provenance=False)
 
 
 def test_command_line(run, tmp_path):

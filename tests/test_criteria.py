@@ -4,9 +4,8 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 import pytest
+from planar_arms import crooked, pairs
 from robots import lee_chen
-from test_exclusion import pairs
-from test_planar import crooked
 
 from equipoise.synthesis.planar.arm import Installation, PlanarArm
 from equipoise.synthesis.planar.criteria import failures, objections, sign_failures

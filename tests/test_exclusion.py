@@ -4,12 +4,9 @@ from dataclasses import replace
 from itertools import combinations, combinations_with_replacement
 
 import pytest
+from planar_arms import pairs
 
 from equipoise.synthesis.planar.exclusion import Leaf, Proof, Split, prove, verify
-
-
-def pairs(n: int) -> list[tuple[int, int]]:
-    return [(i, k) for i in range(1, n + 1) for k in range(i + 1, n + 1)]
 
 
 def within(n: int, span: int):

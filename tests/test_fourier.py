@@ -7,9 +7,10 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from odd_mechanisms import drum, turret
 from random_mechanisms import random_mechanism, random_poses
+from rewritten import in_another_world, relabelled, swapped_ends
 from scipy.spatial.transform import Rotation
-from test_potential import in_another_world, relabelled, swapped_ends
 from zoo import EXACT, LIFT, PENDULUM_K, ZOO, geared_pair, hinge, pendulum, to_ground, vertical_slide
 
 from equipoise.energy import FourierEnergy, NoFourierForm, Potential
@@ -66,18 +67,6 @@ def test_the_bound_bounds(seed: int) -> None:
 def test_the_bound_is_reached_where_there_is_one_term() -> None:
     for m, bound in ((pendulum(0.5 * PENDULUM_K), 2.943), (vertical_slide().mechanism, 9.81)):
         np.testing.assert_allclose(FourierEnergy(m).torque_bound(), [bound], rtol=1e-14)
-
-
-def drum(limits: tuple[float, float] | None, k: float = 98.1) -> Mechanism:
-    """A drum of radius 0.1 m lifts 2 kg: a slide that depends on an angle."""
-    m = vertical_slide(k).mechanism
-    joint, drum = replace(m.joints[0], range=None), replace(hinge("drum", "world", "drum"), range=limits)
-    return replace(
-        m,
-        bodies=(Body("drum"), *m.bodies),
-        joints=(drum, joint),
-        couplings=(Coupling("lift", (("drum", 0.1),)),),
-    )
 
 
 @pytest.mark.parametrize(("limits", "turn"), [(None, pi), ((-6.0, 4.0), 6.0), ((0.5, 0.7), 0.7)])
@@ -156,22 +145,6 @@ def far_away(k: float) -> Mechanism:
             replace(m.joints[0], parent="there"),
         ),
         springs=(replace(m.springs[0], body_a="there"),),
-    )
-
-
-def turret(*springs: Spring, arm: float = 0.0, rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
-    """Ten tons ten metres off a vertical axis: no work for gravity. On it, without a spring, an arm of mass `arm`."""
-    R = Rotation.from_euler("xyz", rpy).as_matrix()
-    x, y, z = (R @ [0, 0, -9.81]).tolist()
-    return Mechanism(
-        "turret",
-        (Body("turret", 1e4, (10.0, 0.0, 0.0)), Body("arm", arm, (0.3, 0.0, 0.0))),
-        (
-            Joint("yaw", "revolute", "world", "turret", rpy=rpy, axis=(0.0, 0.0, 1.0)),
-            hinge("shoulder", "turret", "arm"),
-        ),
-        springs=springs,
-        gravity=(x, y, z),
     )
 
 

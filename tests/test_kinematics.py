@@ -6,57 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from odd_mechanisms import coupled
 from random_mechanisms import random_mechanism, random_poses
-from scipy.spatial.transform import Rotation
+from slow_reference import slow_poses, slow_values
 from zoo import ZOO, geared_pair
 
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.sampling import bounds, inside
 from equipoise.model.errors import InputError
 from equipoise.model.mechanism import Body, Coupling, Joint, Mechanism
-
-SlowPoses = dict[str, tuple[np.ndarray, np.ndarray]]
-
-
-def slow_values(m: Mechanism, q: np.ndarray) -> dict[str, float]:
-    """The value of every coordinate and of every coupled joint, by the definition of a coupling."""
-    values = dict(zip(m.coordinates, map(float, q), strict=True))
-    couplings = {coupling.joint: coupling for coupling in m.couplings}
-
-    def value(name: str) -> float:
-        if name not in values:
-            values[name] = couplings[name].offset + sum(ratio * value(other) for other, ratio in couplings[name].terms)
-        return values[name]
-
-    for name in couplings:
-        value(name)
-    return values
-
-
-def slow_poses(m: Mechanism, q: np.ndarray) -> SlowPoses:
-    """R_WB and p_WB of every body at one configuration, body by body, by the definition of the joints."""
-    values = slow_values(m, q)
-    holder = {joint.child: joint for joint in m.joints}
-    poses: SlowPoses = {"world": (np.eye(3), np.zeros(3))}
-
-    def pose(body: str) -> tuple[np.ndarray, np.ndarray]:
-        if body not in poses:
-            j = holder[body]
-            R_WP, p_WP = pose(j.parent)
-            R_base = pose(j.follows)[0] if j.follows is not None else R_WP
-            R, p = Rotation.from_euler("xyz", j.rpy).as_matrix(), np.array(j.xyz)
-            axis = np.array(j.axis) / np.linalg.norm(j.axis)
-            turn = np.eye(3)
-            if j.type == "revolute":
-                turn = Rotation.from_rotvec(values[j.name] * axis).as_matrix()
-            elif j.type == "spherical":
-                turn = Rotation.from_euler("XYZ", [values[f"{j.name}.{letter}"] for letter in "xyz"]).as_matrix()
-            elif j.type == "prismatic":
-                p = p + values[j.name] * R @ axis
-            poses[body] = R_base @ R @ turn, p_WP + R_WP @ p
-        return poses[body]
-
-    return {body: pose(body) for body in m.body_names}
 
 
 @pytest.mark.parametrize("seed", range(100))
@@ -141,13 +99,6 @@ def test_samples_are_inside_and_reproducible() -> None:
                 if joint.range is not None:
                     assert joint.range[0] - 1e-9 <= values[joint.name] <= joint.range[1] + 1e-9
     assert tried > 30
-
-
-def coupled(lower: float, upper: float) -> Mechanism:
-    """A driver within +-3 rad and a joint that turns minus twice as far, plus one radian."""
-    m = geared_pair(-2.0, 1.0)
-    left, right = m.joints
-    return replace(m, joints=(replace(left, range=(-3.0, 3.0)), replace(right, range=(lower, upper))))
 
 
 def test_the_range_of_a_coupled_joint_is_respected() -> None:

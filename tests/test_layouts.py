@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import combinations, combinations_with_replacement
 
 import pytest
-from test_exclusion import pairs
+from planar_arms import pairs
 
 import equipoise as eq
 from equipoise.model.errors import InputError

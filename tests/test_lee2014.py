@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 import numpy as np
 import pytest
-from test_examples import FOLDER, flat
+from example_files import FOLDER, same
 
 import equipoise as eq
 from equipoise.reproduce import Plot, reproduce
@@ -99,7 +97,4 @@ def test_figure_10(paper):
     [("lee_chen_arm", arm()), *((f"lee2014_table5{case.letter}", balanced(case)) for case in CASES)],
 )
 def test_examples(file, mechanism):
-    found, expected = flat(asdict(eq.load(FOLDER / f"{file}.yaml"))), flat(asdict(mechanism))
-    assert found.keys() == expected.keys()
-    for key, value in expected.items():
-        assert found[key] == (pytest.approx(value, rel=1e-12, abs=1e-15) if isinstance(value, float) else value), key
+    same(eq.load(FOLDER / f"{file}.yaml"), mechanism, 1e-12, 1e-15)

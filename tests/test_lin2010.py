@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from pathlib import Path
-
 import numpy as np
 import pytest
-from test_examples import FOLDER, flat
+from example_files import FOLDER, same
 
 import equipoise as eq
 from equipoise.kinematics import Tree
@@ -112,9 +109,4 @@ def test_the_printed_a_hold_where_x_points_up():
 )
 def test_examples(file):
     mechanism = arm() if file == "lin2010_arm" else balanced(real=file == "lin2010_rssr").mechanism
-    path: Path = FOLDER / f"{file}.yaml"
-    found, expected = flat(asdict(eq.load(path))), flat(asdict(mechanism))
-    found, expected = ({k: v for k, v in x.items() if not k.startswith(".provenance")} for x in (found, expected))
-    assert found.keys() == expected.keys()
-    for key, value in expected.items():
-        assert found[key] == (pytest.approx(value, rel=1e-12, abs=1e-15) if isinstance(value, float) else value), key
+    same(eq.load(FOLDER / f"{file}.yaml"), mechanism, 1e-12, 1e-15, provenance=False)

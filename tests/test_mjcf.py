@@ -12,6 +12,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from in_mujoco import set_pose
 from scipy.spatial.transform import Rotation
 
 from equipoise.io import mjcf, urdf
@@ -97,23 +98,6 @@ def complaints() -> Iterator[list[str]]:
     mujoco.set_mju_user_warning(found.append)
     yield found
     mujoco.set_mju_user_warning(None)
-
-
-def set_pose(m: Mechanism, model: mujoco.MjModel, q: dict[str, float]) -> mujoco.MjData:
-    data = mujoco.MjData(model)
-    joints = mjcf.joint_map(m)
-    assert {model.joint(i).name for i in range(model.njnt)} == joints.keys()
-    for name, value in joints.items():
-        angles = [q[coordinate] for coordinate, _ in value.terms]
-        if value.type == "ball":
-            x, y, z, w = Rotation.from_euler("XYZ", angles).as_quat()
-            data.joint(name).qpos[:] = w, x, y, z
-        else:
-            data.joint(name).qpos[:] = value.offset + sum(
-                ratio * angle for (_, ratio), angle in zip(value.terms, angles, strict=True)
-            )
-    mujoco.mj_fwdPosition(model, data)
-    return data
 
 
 def check(m: Mechanism, model: mujoco.MjModel, poses: int = 5, loops: bool = False) -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_mechanisms import random_chain
 from robots import robot
-from test_chain import random_chain
 from zoo import H1, H2, L1, M1, M2, G, exact_pendulum, lenzo_revolute, lenzo_spherical
 
 import equipoise as eq

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from robots import robot
-from test_gram import some_springs, torque_of
+from spring_sets import some_springs, torque_of
 
 from equipoise.kinematics import Tree, sample
 from equipoise.synthesis.convex import least_squares_form as gram

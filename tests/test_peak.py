@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from odd_mechanisms import coupled, drum
 from random_mechanisms import random_mechanism
-from test_fourier import drum
-from test_kinematics import coupled
 from zoo import ZOO, geared_pair, pendulum, vertical_slide
 
 from equipoise.energy import FourierEnergy, Potential

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planar_arms import crooked
 from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
@@ -29,13 +29,6 @@ THEORY_5 = [
     "13,14,14", "13,14,24", "12,14,24,34", "12,14,23,24",
     "13,14,15,15", "13,14,15,25", "12,14,15,23,25", "13,15,23,24,25", "13,15,24,25,34", "12,13,15,24,25",
 ]  # fmt: skip
-
-
-def crooked(n: int, angle: float = radians(20)) -> eq.Mechanism:
-    """Mass centres off the link lines."""
-    arm = example_arm(n)
-    com = (0.1 * cos(angle), 0.0, 0.1 * sin(angle))
-    return replace(arm, bodies=tuple(replace(body, com=com) for body in arm.bodies))
 
 
 @pytest.mark.parametrize("layout", THEORY_5)

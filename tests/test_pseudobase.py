@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from in_mujoco import set_pose
 from robots import lee_chen, robot
-from test_mjcf import set_pose
 from zoo import counterweight, gantry, lenzo_spherical, mirrored_pair, parallelogram_lamp, vertical_slide
 
 import equipoise as eq

@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
-from browser import chromium
+from browser import opened
 from peers import peer
 from robots import robot
 
 import equipoise as eq
 from equipoise.report.page.make import make, save_report
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
-
 EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 SCHEMES = ("light", "dark")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -45,47 +34,40 @@ def bare(tmp_path_factory) -> Path:
     return path
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("name", ["ur5", "bare"])
-def test_it_opens_from_disk_alone_and_everybody_can_read_it(browser, request, tmp_path, name, scheme):
+def test_it_opens_from_disk_alone_and_everybody_can_read_it(browser, request, name, scheme):
     path = request.getfixturevalue(name)
     assert path.stat().st_size < 3_000_000
-    page = browser.new_page(viewport={"width": 1200, "height": 900}, color_scheme=scheme)
     asked, said = [], []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("console", lambda message: said.append(message.text))
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto(path.as_uri())
-    page.wait_for_load_state("networkidle")
-    page.screenshot(path=tmp_path / f"{name}-{scheme}.png", full_page=True)
+    with opened(browser, 1200, 600, color_scheme=scheme) as page:
+        page.on("request", lambda request: asked.append(request.url))
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.goto(path.as_uri())
+        page.wait_for_load_state("networkidle")
+        found = peer("axe_playwright_python.sync_playwright").Axe().run(page)
     assert [url for url in asked if url != "data:,"] == [path.as_uri()]  # "data:,": an icon of nothing, in the file
     assert said == []
-    found = peer("axe_playwright_python.sync_playwright").Axe().run(page)
     assert [
         (one["id"], [node["target"] for node in one["nodes"]])
         for one in found.response["violations"]
         if one["impact"] in ("serious", "critical")
     ] == []
-    page.close()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("width", [360, 1200])
 def test_it_fits_the_width_of_a_screen(browser, ur5, width):
-    page = browser.new_page(viewport={"width": width, "height": 700})
-    page.goto(ur5.as_uri())
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    page.close()
+    with opened(browser, width, 400) as page:
+        page.goto(ur5.as_uri())
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-@pytest.mark.slow
 def test_paper_is_white_in_dark_mode_too(browser, ur5):
-    page = browser.new_page(color_scheme="dark")
-    page.goto(ur5.as_uri())
-    colour = "getComputedStyle(document.body).backgroundColor"
-    assert page.evaluate(colour) != "rgb(255, 255, 255)"
-    page.emulate_media(media="print")
-    assert page.evaluate(colour) == "rgb(255, 255, 255)"
-    assert page.pdf().startswith(b"%PDF-")
-    page.close()
+    with opened(browser, 600, 400, color_scheme="dark") as page:
+        page.goto(ur5.as_uri())
+        colour = "getComputedStyle(document.body).backgroundColor"
+        assert page.evaluate(colour) != "rgb(255, 255, 255)"
+        page.emulate_media(media="print")
+        assert page.evaluate(colour) == "rgb(255, 255, 255)"
+        assert page.pdf().startswith(b"%PDF-")

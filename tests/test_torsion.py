@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from in_mujoco import mujoco_state
 from peers import peer
 from random_mechanisms import random_mechanism, random_poses, with_torsion
-from test_potential import mujoco_state
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential

@@ -18,6 +18,7 @@ from .shapes import across, capsule, coil, colour, wire
 THICK = 0.032  # radius of a link, of the mechanism's size
 TURNS = 12
 FIXED = (70, 80, 92)
+SKY, GROUND, BRIGHT = (255, 255, 255), (150, 160, 172), 2.5  # the light from everywhere
 JOINT, MASS, LOAD = (236, 240, 244), (20, 26, 33), (214, 122, 30)
 
 
@@ -76,13 +77,15 @@ class Scene:
     def _stage(self, floor: float) -> None:
         view, scene = self.model.view, self.server.scene
         scene.set_up_direction(view.vertical)
-        scene.configure_default_lights(True, cast_shadow=True)
-        scene.configure_environment_map("studio", environment_intensity=0.35)
+        # no shadows and no environment map: without a graphics card the first picture would take ten times as long
+        scene.configure_default_lights(True, cast_shadow=False)
+        scene.configure_environment_map(None)
+        scene.add_light_hemisphere("/sky", sky_color=SKY, ground_color=GROUND, intensity=BRIGHT)
         cell = 10.0 ** np.floor(np.log10(self.size))
         R = np.stack([*across(view.vertical), view.vertical], axis=1)
         scene.add_grid(
             "/floor", 40 * cell, 40 * cell, cell_size=cell, section_size=5 * cell, cell_color=(226, 231, 236),
-            section_color=(208, 215, 222), fade_distance=14 * self.size, infinite_grid=True, shadow_opacity=0.2,
+            section_color=(208, 215, 222), fade_distance=14 * self.size, infinite_grid=True,
             wxyz=_quaternion(R), position=self.middle
             + (floor - 1.5 * self.thick - float(self.middle @ view.vertical)) * view.vertical,
         )  # fmt: skip
