@@ -149,9 +149,7 @@ def search(
     """
     most = candidates(n, objective, springs, weight)
     if most > MAX_LAYOUTS:
-        message = (
-            f"{most:,} layouts would have to be looked at, at most {MAX_LAYOUTS:,} are: take fewer"
-        )
+        message = f"{most:,} layouts would have to be looked at, at most {MAX_LAYOUTS:,} are: take fewer"
         raise InputError(Fault(("n",), message))
     example = example_arm(n)
     arm = PlanarArm.of(example)
