@@ -37,7 +37,8 @@ def csv_rows(path: str | os.PathLike[str], most: int, separators: str = SEPARATO
             if len(found) > most + 1:
                 raise InputError(Fault((), f"has more than {most:,} rows", file=name))
             if max(map(len, cells), default=0) > LONGEST:
-                raise csv.Error(f"a cell of more than {LONGEST:,} characters")
+                message = f"is no table: a cell of more than {LONGEST:,} characters"
+                raise InputError(Fault((), message, file=name, line=lines.line_num))
     except csv.Error as error:
         raise InputError(Fault((), f"is no table: {error}", file=name, line=lines.line_num)) from None
     if not found:
