@@ -50,9 +50,8 @@ __all__ = [
     "view",
 ]
 
-
-class _Terminated(BaseException):
-    """The system asks us to end: what is being written is cleared up on the way out."""
+ENDS = {128 + signal.SIGINT: "interrupted", 128 + signal.SIGTERM: "terminated"}
+"""Exit codes of a command that is told to stop, and the last lines; what is being written is cleared up on the way."""
 
 
 def main() -> None:
@@ -60,13 +59,11 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a letter is no reason to fail
-    before = signal.signal(signal.SIGTERM, _terminate)
+    before = signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
         _run()
     except KeyboardInterrupt:
         _end("interrupted", 128 + signal.SIGINT)
-    except _Terminated:
-        _end("terminated", 128 + signal.SIGTERM)
     except EquipoiseError as error:
         _end(f"error: {error}", error.exit_code)
     except BrokenPipeError:  # the reader of our output has closed it, `| head` for example
@@ -90,16 +87,12 @@ def _run() -> None:
         app()
     except SystemExit as stop:
         if isinstance(stop.__context__, BrokenPipeError):
-            raise stop.__context__ from None
-        if stop.code == 128 + signal.SIGINT:
-            raise KeyboardInterrupt from None
+            _end("", 0)
+        if isinstance(stop.code, int) and stop.code in ENDS:
+            _end(ENDS[stop.code], stop.code)
         if sys.stdout is not None:
             sys.stdout.flush()  # here a full disk is still an error that can be said
         raise
-
-
-def _terminate(*_: object) -> None:
-    raise _Terminated
 
 
 def _end(text: str, code: int) -> NoReturn:
