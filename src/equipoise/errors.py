@@ -13,6 +13,10 @@ class EquipoiseWarning(UserWarning):
     """Something in the input looks wrong but can be worked with."""
 
 
+class SlipWarning(EquipoiseWarning):
+    """Something in a valid mechanism looks like a slip: see `slips`."""
+
+
 class EquipoiseError(Exception):
     """Base class. `exit_code` is what the command line returns: 2 bad input, 1 the answer is "no"."""
 

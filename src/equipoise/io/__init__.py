@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import re
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import Fault, InputError
+from ..errors import Fault, InputError, SlipWarning
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
@@ -16,31 +17,63 @@ YAML_SUFFIXES = (".yaml", ".yml")
 URDF_SUFFIXES = (".urdf", ".xml")
 MJCF_SUFFIXES = (".mjcf", ".xml")
 MODEL_SUFFIXES = tuple(dict.fromkeys((*URDF_SUFFIXES, *MJCF_SUFFIXES)))  # what a mechanism file can build on
+CONVERTED = {
+    ".xacro": "it has macros in it; expand them first: xacro FILE > robot.urdf",
+    ".sdf": "turn it into MJCF first, with sdf2mjcf FILE robot.xml of the package sdformat-mjcf",
+}
+"""What is no mechanism file but becomes one, and how."""
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
-def load(path: str | os.PathLike[str]) -> Mechanism:
+def load(path: str | os.PathLike[str], *, base: str | None = None) -> Mechanism:
     """Read a mechanism file; the suffix says which kind: .yaml or .yml, .urdf, .mjcf.
 
     In a file .xml the root element says it.
 
+    Args:
+        base: "fixed" holds every body of a model that floats where it is drawn; "free" lets those float, and sets
+            free what is fixed to the world and carries joints. None reads what is there.
+
     Raises:
         InputError: everything that is wrong with the file, with file, line and column.
+
+    Warns:
+        EquipoiseWarning: for what is read otherwise than it stands there, or not at all.
+        SlipWarning: for what looks like a slip (see `slips`).
     """
+    from ..slips import slips
+
+    if base not in (None, "fixed", "free"):
+        raise InputError(Fault(("base",), f"unknown value '{base}'", ("fixed", "free")))
+    mechanism = read(path, base)
+    if base == "free":
+        from .freed import free_base
+
+        mechanism = free_base(mechanism)
+    for message in slips(mechanism):
+        warnings.warn(str(Fault((), message, file=os.fspath(path))), SlipWarning, stacklevel=2)
+    return mechanism
+
+
+def read(path: str | os.PathLike[str], base: str | None) -> Mechanism:
+    """`load`, without looking for slips."""
     suffix = Path(path).suffix.lower()
     if suffix in YAML_SUFFIXES:
         from . import yaml
 
-        return yaml.read(path)
-    if suffix in MJCF_SUFFIXES and (suffix not in URDF_SUFFIXES or _is_mjcf(path)):
-        from . import mjcf_read
+        return yaml.read(path, base)
+    if suffix in MODEL_SUFFIXES:
+        root = _root(path) if suffix == ".xml" else ""
+        if suffix == ".mjcf" or root.startswith("mujoco"):
+            from . import mjcf_read
 
-        return mjcf_read.read(path)
-    if suffix in URDF_SUFFIXES:
+            return mjcf_read.read(path, base)
         from . import urdf
 
-        return urdf.read(Path(path))
+        return urdf.read(Path(path), base)
     found = f"a mechanism file cannot be {_suffix(path)}"
+    if suffix in CONVERTED:
+        raise InputError(Fault((), f"{found}: {CONVERTED[suffix]}", file=os.fspath(path)))
     raise InputError(Fault((), found, (*YAML_SUFFIXES, *MODEL_SUFFIXES), file=os.fspath(path)))
 
 
@@ -71,13 +104,13 @@ def check_savable(path: str | os.PathLike[str]) -> None:
     check_writable(path)
 
 
-def _is_mjcf(path: str | os.PathLike[str]) -> bool:
-    """Whether the first element of an XML file is MJCF's: comments and declarations may come before it."""
+def _root(path: str | os.PathLike[str]) -> str:
+    """The tag of the first element of an XML file: comments and declarations may come before it."""
     from .files import read_text
 
     text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
     first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
-    return first is not None and first[1] == "mujoco"
+    return first[1] if first else ""
 
 
 def _suffix(path: str | os.PathLike[str]) -> str:

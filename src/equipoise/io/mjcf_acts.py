@@ -1,0 +1,93 @@
+"""What acts in an MJCF model beside what `mjcf_read` reads: flags that switch things off, forces without counterpart.
+
+A force that the engine counts as passive or as bias at rest is either read, or named by one of these.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's names come from a compiled module that ships no type stubs)
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .notes import Notes
+
+LEFT_OUT = (
+    ("body", "body_gravcomp", "gravity compensation (gravcomp) is left out: the full weight counts"),
+    ("joint", "jnt_stiffness", "a joint's spring (stiffness) is left out: add it to the design as a spring"),
+    ("joint", "jnt_stiffnesspoly", "a joint's curved spring (stiffness with several numbers) is left out"),
+    ("tendon", "tendon_limited", "limits of a tendon's length are left out"),
+    ("tendon", "tendon_frictionloss", "friction of a tendon is left out"),
+)
+"""What belongs to each kind of element, by the array of the model that holds it, and what is said where it is not 0."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A compiled model with the means to name its parts.
+
+    Attributes:
+        mj, model: the engine, and the compiled model.
+        notes: what is to be said.
+        line: of the element with a tag and a name, None where the file itself does not have it.
+    """
+
+    mj: Any
+    model: Any
+    notes: Notes
+    line: Callable[[str, str], int | None]
+
+    def name(self, kind: str, i: int) -> str:
+        """The engine's name of an element of a kind, or one with its number."""
+        found = self.mj.mj_id2name(self.model, int(getattr(self.mj.mjtObj, f"mjOBJ_{kind.upper()}")), i)
+        return found or f"{kind} {i}"
+
+    def note(self, kind: str, i: int, message: str) -> None:
+        name = self.name(kind, i)
+        self.notes.note(f"{kind} '{name}'", message, self.line(kind, name))
+
+    def refuse(self, kind: str, i: int, message: str) -> None:
+        name = self.name(kind, i)
+        self.notes.refuse(f"{kind} '{name}'", message, self.line(kind, name))
+
+    def off(self, *flags: str) -> bool:
+        """Whether a flag of these is disabled; engines differ in the flags they have."""
+        bits = (int(getattr(self.mj.mjtDisableBit, f"mjDSBL_{flag.upper()}", 0)) for flag in flags)
+        return any(self.model.opt.disableflags & bit for bit in bits)
+
+    def say(self) -> None:
+        """Name what acts and is not read, and the flags that are heeded."""
+        model, notes = self.model, self.notes
+        self._flags()
+        springs = not self.off("spring", "passive")
+        for kind, array, message in LEFT_OUT:
+            values = getattr(model, array, np.zeros(0))  # an older engine has no such thing
+            for i in np.flatnonzero(values.reshape(len(values), -1).any(axis=1)) if len(values) else ():
+                if springs or "stiffness" not in array:
+                    self.note(kind, int(i), message)
+        for f in range(model.nflex):
+            self.refuse("flex", f, "is an elastic body: only rigid ones are known")
+        for b in np.flatnonzero(model.body_plugin >= 0):
+            self.note("body", int(b), "the force of a plugin is left out")
+        if np.any(model.opt.wind) and (model.opt.density or model.opt.viscosity):
+            notes.note("<option wind>", "the force of wind is left out")
+        for a in range(getattr(model, "nactuator", model.nu)):
+            muscle = int(model.actuator_biastype[a]) == int(self.mj.mjtBias.mjBIAS_MUSCLE)
+            alone = not np.any(model.actuator_gainprm[a]) and np.any(model.actuator_biasprm[a, :2])
+            if muscle or alone:
+                self.note("actuator", a, "what it pulls without being told to is left out")
+
+    def _flags(self) -> None:
+        model, elastic = self.model, (self.model.tendon_stiffness, self.model.jnt_stiffness)
+        for flags, acts, what in (
+            (("spring", "passive"), any(np.any(values) for values in elastic), "springs"),
+            (("equality", "constraint"), bool(np.any(model.eq_active0)), "equalities"),
+            (("limit", "constraint"), bool(np.any(model.jnt_limited)), "ranges of joints"),
+            (("gravity",), True, "gravity"),
+        ):
+            if acts and self.off(*flags):
+                self.notes.note(f"<flag {flags[0]}='disable'>", f"{what} off: it is heeded", self.line("flag", ""))
