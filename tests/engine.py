@@ -56,7 +56,7 @@ class Engine:
 
     def torque(self, q: np.ndarray) -> np.ndarray:
         """(N, n) what holds it at rest at `q` (N, n) [N m or N], NaN where it does not close at or close by."""
-        model, data = self.model, self.data
+        model = self.model
         rates = np.zeros((len(q), model.nv, self.tree.n))
         here = self.qpos(q)
         for i in range(self.tree.n):

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 MAX_SAMPLES = 10_000_000
+INSTEAD = {
+    "mass": "; where something lifts, as buoyancy does, give the mass less what is lifted",
+    "free_length": "; springs tightened beyond zero length are not known",
+}
+"""What a negative value is meant to say, and how to say it."""
 
 
 def faults(mechanism: Mechanism) -> list[Fault]:
@@ -84,7 +89,7 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
 
 def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
     if not (isfinite(value) and value >= low):
-        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}")
+        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}{INSTEAD.get(str(path[-1]), '')}")
 
 
 def _names(m: Mechanism) -> Iterator[Fault]:

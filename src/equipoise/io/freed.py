@@ -18,7 +18,7 @@ STEPS: Mapping[str, tuple[JointType, ...]] = {
     "planar": ("prismatic", "prismatic", "revolute"),
 }
 """The joints of each kind, from the parent on; the last one has the name of the whole, the slides a letter more."""
-FREE = "it is free and nothing holds it: it falls. --base fixed holds it where it is drawn"
+FREE = "is free, and nothing holds what it carries: it falls; --base fixed holds it where it is drawn"
 
 
 def chain(kind: str, joint: Joint, bodies: Names) -> tuple[list[Body], list[Joint]]:

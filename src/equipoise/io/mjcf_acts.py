@@ -8,7 +8,7 @@ A force that the engine counts as passive or as bias at rest is either read, or 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,10 @@ LEFT_OUT = (
 )
 """What belongs to each kind of element, by the array of the model that holds it, and what is said where it is not 0."""
 
+TAGS = {"joint": ("joint", "freejoint"), "tendon": ("spatial", "fixed"), "equality": ("connect", "weld"),
+        "flex": ("flex", "flexcomp"), "actuator": ("general", "muscle")}  # fmt: skip
+"""How the elements of a kind may be called in a file, where not as the kind."""
+
 
 @dataclass(frozen=True)
 class Model:
@@ -33,26 +37,29 @@ class Model:
     Attributes:
         mj, model: the engine, and the compiled model.
         notes: what is to be said.
-        line: of the element with a tag and a name, None where the file itself does not have it.
+        lines: of the elements of the file itself, by tag and name.
     """
 
     mj: Any
     model: Any
     notes: Notes
-    line: Callable[[str, str], int | None]
+    lines: Mapping[tuple[str, str], int]
 
     def name(self, kind: str, i: int) -> str:
-        """The engine's name of an element of a kind, or one with its number."""
-        found = self.mj.mj_id2name(self.model, int(getattr(self.mj.mjtObj, f"mjOBJ_{kind.upper()}")), i)
-        return found or f"{kind} {i}"
+        """The engine's name of an element of a kind, empty where it has none."""
+        return self.mj.mj_id2name(self.model, int(getattr(self.mj.mjtObj, f"mjOBJ_{kind.upper()}")), i) or ""
 
     def note(self, kind: str, i: int, message: str) -> None:
-        name = self.name(kind, i)
-        self.notes.note(f"{kind} '{name}'", message, self.line(kind, name))
+        self.notes.note(*self._place(kind, i, message))
 
     def refuse(self, kind: str, i: int, message: str) -> None:
+        self.notes.refuse(*self._place(kind, i, message))
+
+    def _place(self, kind: str, i: int, message: str) -> tuple[str, str, int | None]:
         name = self.name(kind, i)
-        self.notes.refuse(f"{kind} '{name}'", message, self.line(kind, name))
+        found = (self.lines.get((tag, name)) for tag in TAGS.get(kind, (kind,)))
+        line = next((line for line in found if name and line is not None), None)
+        return f"{kind} '{name}'" if name else f"{kind} {i}", message, line
 
     def off(self, *flags: str) -> bool:
         """Whether a flag of these is disabled; engines differ in the flags they have."""
@@ -90,4 +97,6 @@ class Model:
             (("gravity",), True, "gravity"),
         ):
             if acts and self.off(*flags):
-                self.notes.note(f"<flag {flags[0]}='disable'>", f"{what} off: it is heeded", self.line("flag", ""))
+                self.notes.note(
+                    f"<flag {flags[0]}='disable'>", f"{what} off: it is heeded", self.lines.get(("flag", ""))
+                )

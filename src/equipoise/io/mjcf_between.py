@@ -127,26 +127,25 @@ class Between:
         """Loops of connects and welds, but for the welds that hold free bodies."""
         mj, model = self.source.mj, self.source.model
         found: dict[tuple[str, str, int], list[Loop]] = {}
+        holding = {i for i, _, _ in held.values()}
         for i, a, b in self._equalities("CONNECT", "WELD"):
             A, p_a, R_a, B, p_b, R_b = self._ends(i, a, b)
             (body_a, at_a), (body_b, at_b) = self.place[A], self.place[B]
             ends = at_a + p_a, at_b + p_b
-            if max(model.body_mocapid[[A, B]]) >= 0 and i not in {weld for weld, _, _ in held.values()}:
+            if i in holding:
+                continue
+            if max(model.body_mocapid[[A, B]]) >= 0:
                 self.source.note("equality", i, "what ties it to a mocap body, which a program moves, is left out")
             elif int(model.eq_type[i]) == int(mj.mjtEq.mjEQ_WELD):
-                if i not in {weld for weld, _, _ in held.values()}:
-                    arms = [(p + HINGE_ARM * R[:, k] for p, R in zip(ends, (R_a, R_b), strict=True)) for k in (2, 0)]
-                    made = found.setdefault((body_a, body_b, i), [])
-                    for two in (ends, *arms):
-                        _connect(made, body_a, body_b, *two)
+                arms = [(ends[0] + HINGE_ARM * R_a[:, k], ends[1] + HINGE_ARM * R_b[:, k]) for k in (2, 0)]
+                for two in (ends, *arms):
+                    _connect(found.setdefault((body_a, body_b, i), []), body_a, body_b, *two)
             else:
                 _connect(found.setdefault((body_a, body_b, -1), []), body_a, body_b, *ends)
         known = {int(getattr(mj.mjtEq, f"mjEQ_{kind}")) for kind in ("CONNECT", "WELD", "JOINT", "TENDON")}
         for i in np.flatnonzero(model.eq_active0):
             if int(model.eq_type[i]) not in known:
-                self.source.refuse(
-                    "equality", int(i), "is none of connect, weld, joint and tendon: it has no counterpart"
-                )
+                self.source.refuse("equality", int(i), "is no connect, weld, joint or tendon: it has no counterpart")
         return tuple(loop for made in found.values() for loop in made)
 
     def springs(self) -> tuple[Spring, ...]:

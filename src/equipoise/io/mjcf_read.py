@@ -69,9 +69,8 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
     except ValueError as error:
         reason = " ".join(str(error).split()).removeprefix("Error: ")
         raise InputError(Fault((), f"MuJoCo does not compile it: {reason}", file=name)) from None
-    where = lines(text, name)
     notes = Notes(name)
-    reader = _Reader(Model(mujoco, model, notes, lambda tag, called: where.get((tag, called))), base)
+    reader = _Reader(Model(mujoco, model, notes, lines(text, name)), base)
     try:
         mechanism = reader.mechanism()
     except InputError as error:
@@ -152,7 +151,7 @@ class _Reader:
 
     def _body(self, b: int, leaf: bool) -> None:
         model = self.model
-        name = self._names.new(model.body(b).name or f"body {b}")
+        name = self._names.new(self.source.name("body", b) or f"body {b}")
         parent, origin = self.place[int(model.body_parentid[b])]
         position, R = origin + model.body_pos[b], from_quaternion(model.body_quat[b])
         mass, com = float(model.body_mass[b]), model.body_ipos[b]
@@ -188,7 +187,7 @@ class _Reader:
     def _joint(self, j: int, parent: str, child: str, shift: Array, turn: Array) -> Array:
         """Add a joint; gives the orientation that is left for the next one: none."""
         model = self.model
-        name = self._joint_names.new(self.source.name("joint", j))
+        name = self._joint_names.new(self.source.name("joint", j) or f"joint {j}")
         kind = self._type(j)
         if kind == "floating" and (j in self.held or self.base == "fixed"):
             _, R, p = self.held.get(j, (0, turn, shift))

@@ -28,8 +28,8 @@ class Notes:
         self._found[message].append(what if line is None else f"{what} (line {line})")
 
     def refuse(self, what: str, message: str, line: int | None = None) -> None:
-        """`what` cannot be read: `message` says why, and what to do."""
-        self.faults.append(Fault((what,) if what else (), message, file=self.file, line=line))
+        """`what` cannot be read: `message` goes on with why, and what to do."""
+        self.faults.append(Fault((), f"{what} {message}", file=self.file, line=line))
 
     def close(self) -> None:
         """Raise an error with the faults, or give the warnings.

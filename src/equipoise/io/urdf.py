@@ -136,7 +136,7 @@ class _Reader:
             raise self._error() from None
         for joint, element in floating:
             if self.base is None and not self.faults and not freed.held(mechanism, joint):
-                self._fault(element, (label(element), "type"), freed.FREE)
+                self._fault(element, (), f"{label(element)} {freed.FREE}")
         if self.faults:
             raise self._error()
         return mechanism
@@ -236,8 +236,8 @@ class _Reader:
             if joint.type == "fixed":
                 self.notes.note(label(element), "<mimic> on a fixed joint is ignored", mimic.line)
             elif leader and types.get(leader, "fixed") == "fixed":
-                what = "a fixed joint" if leader in types else nearest(leader, types) + " which is not there"
-                self.notes.note(label(element), f"<mimic> of {what}: the joint moves by itself", mimic.line)
+                what = f"a fixed joint, '{leader}'" if leader in types else f"no joint {nearest(leader, types)}"
+                self.notes.note(label(element), f"it moves by itself, for <mimic> names {what}", mimic.line)
             else:
                 found.append((Coupling(joint.name, ((leader, ratio),), offset), element))
         return found

@@ -26,7 +26,7 @@ GAZEBO = {
     "spring_stiffness": ("0", "a simulator's spring on a joint is left out: add it to the design as a spring"),
     "turnGravityOff": ("false", OFF),
     "gravity": ("true", OFF),
-    "joint": ("", "a simulator's joint is left out: write it as <loop_joint>, or as a loop of a mechanism file"),
+    "joint": ("never", "a simulator's joint is left out: write it as <loop_joint>, or as a loop of a mechanism file"),
 }
 """What acts among a simulator's settings: the value with which it does not, and what is said of any other."""
 SAME = {"1": "true", "0.0": "0"}
@@ -49,7 +49,7 @@ def unread(document: Document, notes: Notes) -> None:
 
 
 def _settings(gazebo: Element, notes: Notes) -> None:
-    for element in gazebo.walk():
+    for element in gazebo.children:
         idle, message = GAZEBO.get(element.tag, ("", ""))
         text = "".join(element.texts).strip().lower() or element.attributes.get("value", "")
         if message and SAME.get(text, text) != idle:

@@ -30,7 +30,9 @@ def loops(root: Element, notes: Notes) -> list[tuple[Loop, Element]]:
         ends = [_end(element, tag, notes) for tag in ("link1", "link2")]
         axis = _vector(element.find("axis"), "xyz", (1.0, 0.0, 0.0), element, notes)
         if kind not in TYPES:
-            notes.refuse(label(element), f"there is no loop of type '{kind}'; valid: {', '.join(TYPES)}", element.line)
+            notes.refuse(
+                label(element), f"is of no type that is known, '{kind}'; valid: {', '.join(TYPES)}", element.line
+            )
         if len(notes.faults) > before:
             continue
         (link_a, p_a, R_a), (link_b, p_b, R_b) = ends
@@ -48,7 +50,7 @@ def loops(root: Element, notes: Notes) -> list[tuple[Loop, Element]]:
 def _end(element: Element, tag: str, notes: Notes) -> tuple[str, Array, Array]:
     end = element.find(tag)
     if end is None or not end.attributes.get("link"):
-        notes.refuse(label(element), f"missing: a loop needs <{tag} link='...'/>", element.line)
+        notes.refuse(label(element), f"needs <{tag} link='...'/>", element.line)
         return "", np.zeros(3), np.eye(3)
     xyz, rpy = (_vector(end, key, (0.0, 0.0, 0.0), element, notes) for key in ("xyz", "rpy"))
     return end.attributes["link"], xyz, from_rpy(rpy)
@@ -62,5 +64,5 @@ def _vector(at: Element | None, key: str, default: tuple[float, float, float], e
         found = np.zeros(0)
     if found.shape == (3,) and all(isfinite(x) for x in found):
         return found
-    notes.refuse(label(element), f"expected 3 numbers as {key}, found '{words}'", element.line)
+    notes.refuse(label(element), f"needs 3 numbers as {key}, found '{words}'", element.line)
     return np.array(default)
