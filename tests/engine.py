@@ -6,13 +6,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import mujoco
 import numpy as np
 
 import equipoise as eq
 from equipoise.kinematics import Tree
+from equipoise.kinematics.linkage import Linkage
 from equipoise.rotation import about, from_quaternion, from_rpy, to_quaternion
 
 STEP = 0.01  # [rad or m] between the seven poses of a derivative of sixth order
@@ -24,14 +24,16 @@ class Engine:
 
     def __init__(self, path: Path, mechanism: eq.Mechanism) -> None:
         self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.model.opt.jacobian = int(mujoco.mjtJacobian.mjJAC_DENSE)
         self.data = mujoco.MjData(self.model)
         self.mechanism, self.tree = mechanism, Tree.of(mechanism)
+        self.open = self.tree.open if isinstance(self.tree, Linkage) else self.tree
         self.joints = {joint.name: joint for joint in mechanism.joints}
         self.row = {name: row for row, name in enumerate(self.tree.motions)}
 
     def qpos(self, q: np.ndarray) -> np.ndarray:
-        """(N, nq) the engine's coordinates where ours are `q` (N, n); NaN where the loops do not close."""
-        model, s = self.model, self.tree.values(q)
+        """(N, nq) the engine's coordinates where those of the spanning tree are `q` (N, open.n)."""
+        model, s = self.model, self.open.values(q)
         found = np.tile(model.qpos0, (len(q), 1))
         for j in range(model.njnt):
             name, at = model.joint(j).name or f"joint {j}", int(model.jnt_qposadr[j])
@@ -51,29 +53,38 @@ class Engine:
 
     def _ball(self, s: np.ndarray, name: str, zero: np.ndarray) -> np.ndarray:
         turns = [about(axis, s[:, self.row[f"{name}.{letter}"]]) for axis, letter in zip(np.eye(3), "xyz", strict=True)]
-        R = zero @ turns[0] @ turns[1] @ turns[2]
-        return np.array([to_quaternion(one) if np.isfinite(one).all() else [np.nan] * 4 for one in R])
+        return np.array([to_quaternion(R) for R in zero @ turns[0] @ turns[1] @ turns[2]])
 
     def torque(self, q: np.ndarray) -> np.ndarray:
-        """(N, n) what holds it at rest at `q` (N, n) [N m or N], NaN where it does not close at or close by."""
-        model = self.model
-        rates = np.zeros((len(q), model.nv, self.tree.n))
-        here = self.qpos(q)
-        for i in range(self.tree.n):
-            for k, weight in WEIGHTS.items():
-                for sign in (1, -1):
-                    there = self.qpos(q + sign * k * STEP * np.eye(self.tree.n)[i])
-                    for a, b, rate in zip(here, there, rates, strict=True):
-                        way = np.zeros(model.nv)
-                        mujoco.mj_differentiatePos(model, way, 1.0, a, b)
-                        rate[:, i] += sign * weight / STEP * way
-        force = np.array([self._force(one) for one in here])
-        return np.einsum("nvi,nv->ni", rates, force)
+        """(N, n) what holds it at rest at `q` (N, n) [N m or N], by the engine's own constraints; NaN where open."""
+        closed = self.tree.branch.solve(q)[0] if isinstance(self.tree, Linkage) else q
+        found = np.full(q.shape, np.nan)
+        for k in np.flatnonzero(np.isfinite(closed).all(axis=1)):
+            rates, (force, J) = self._rates(closed[k]), self._forward(self.qpos(closed[k : k + 1])[0])
+            if isinstance(self.tree, Linkage):
+                split, by_tree = self.tree.branch.split, J @ rates
+                follow = -np.linalg.pinv(by_tree[:, split.dependent], rcond=1e-9) @ by_tree[:, split.independent]
+                rates = rates[:, split.independent] + rates[:, split.dependent] @ follow
+            found[k] = rates.T @ force
+        return found
 
-    def _force(self, qpos: np.ndarray) -> Any:
-        if not np.isfinite(qpos).all():
-            return np.full(self.model.nv, np.nan)
-        mujoco.mj_resetData(self.model, self.data)
-        self.data.qpos[:] = qpos
-        mujoco.mj_forward(self.model, self.data)
-        return self.data.qfrc_bias - self.data.qfrc_passive
+    def _rates(self, q: np.ndarray) -> np.ndarray:
+        """(nv, open.n) the engine's velocities for unit rates of the spanning tree's coordinates at `q` (open.n,)."""
+        rates = np.zeros((self.model.nv, len(q)))
+        (here,) = self.qpos(q[None])
+        for k, weight in WEIGHTS.items():
+            for sign in (1, -1):
+                for i, there in enumerate(self.qpos(q + sign * k * STEP * np.eye(len(q)))):
+                    way = np.zeros(self.model.nv)
+                    mujoco.mj_differentiatePos(self.model, way, 1.0, here, there)
+                    rates[:, i] += sign * weight / STEP * way
+        return rates
+
+    def _forward(self, qpos: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(nv,) the forces that hold it at rest, and (equations, nv) the Jacobian of the equalities."""
+        model, data = self.model, self.data
+        mujoco.mj_resetData(model, data)
+        data.qpos[:] = qpos
+        mujoco.mj_forward(model, data)
+        rows = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+        return data.qfrc_bias - data.qfrc_passive, data.efc_J.reshape(data.nefc, model.nv)[rows]

@@ -7,7 +7,7 @@ from test_urdf import TWO, joint, read
 
 from equipoise.errors import EquipoiseWarning
 
-ONES = "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'"
+NONE = "ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'"
 M = "<link name='m'><inertial>{}</inertial></link>" + joint("fixed", name="m", child="m") + joint("fixed")
 
 NOTES = {
@@ -26,10 +26,10 @@ NOTES = {
     "no limit": (joint("revolute"), "joint 'j' (line 3): its limits are missing: read as unlimited"),
     "limit without bounds": (joint("prismatic", "\n<limit effort='1'/>"), "joint 'j' (line 4): its limits are missing"),
     "0 to 0": (joint("revolute", "<limit lower='0' upper='0'/>"), "its range is a single value, 0 to 0: read as"),
-    "no mass": (M.format(f"<inertia {ONES}/>"),
+    "no mass": (M.format(f"<inertia {NONE}/>"),
                 "link 'm' (line 3): its mass is missing, and taken as 0 kg"),
     "mass without value": (
-        M.format(f"<inertia {ONES}/>\n<mass/>"),
+        M.format(f"<inertia {NONE}/>\n<mass/>"),
         "link 'm' (line 4): its mass is missing",
     ),
     "no inertia": (
