@@ -54,7 +54,8 @@ def row(path: Path) -> tuple[str, ...] | None:
 
 def main() -> None:
     """Write the table after the mark."""
-    files.load(files.URDF[0]), files.load(files.MJCF[0])  # what is imported once is not counted
+    for path in (files.URDF[0], files.MJCF[0]):
+        files.load(path)  # what is imported once is not counted
     rows = [found for path in (*files.URDF, *files.MJCF) if (found := row(path)) is not None]
     count = sum(found[1] == "read" for found in rows)
     lines = [HEAD, ("---",) * len(HEAD), *rows]
