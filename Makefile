@@ -38,11 +38,12 @@ test: $(STAMP) ## all tests
 test-fast: $(STAMP) ## the tests that are not marked slow
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 
-lint: $(STAMP) ## style, format, types, import contracts
+lint: $(STAMP) ## style, format, types, import contracts and circles
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/pyright
 	$(BIN)/lint-imports
+	$(BIN)/python tests/check_imports.py
 
 format: $(STAMP) ## put the sources into the format that lint asks for
 	$(BIN)/ruff check --fix

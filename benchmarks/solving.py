@@ -20,6 +20,7 @@ from equipoise.robust import tolerance
 from equipoise.synthesis import Problem
 from equipoise.synthesis.bound import least_rms
 from equipoise.synthesis.gram import Gram, build
+from equipoise.synthesis.spring_block import smat
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 
@@ -34,8 +35,9 @@ def by_cvxpy(gram: Gram) -> Callable[[], object]:
 
     def solve() -> object:
         N = [cp.Variable((7, 7), PSD=True) for _ in gram.problem.pairs]
-        scale = 1 / np.abs(gram.Q).max()
-        w = sum(scale * Q.reshape(len(Q), -1) @ cp.reshape(M, 49, order="C") for Q, M in zip(gram.Q, N, strict=True))
+        scale = 1 / max(np.abs(columns).max() for columns in gram.columns)
+        every = [scale * smat(columns) for columns in gram.columns]
+        w = sum(Q.reshape(len(Q), -1) @ cp.reshape(M, 49, order="C") for Q, M in zip(every, N, strict=True))
         limits = [sum(M[i, i] for i in end) <= M[3, 3] for M in N for end in ((0, 1, 2), (4, 5, 6))]
         torque = cp.norm(cp.hstack([w + gram.d, gram.rest]))
         return cp.Problem(cp.Minimize(torque), limits).solve(solver=cp.CLARABEL)

@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
+from equipoise.elements import Spring, TorsionSpring, Vec3
 from equipoise.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass
-from equipoise.spring import Spring, Vec3
 
 RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
 
@@ -53,6 +53,18 @@ def random_mechanism(
         masses=tuple(masses),
         gravity=_vector(rng, 10.0),
     )
+
+
+def with_torsion(m: Mechanism, seed: int) -> Mechanism:
+    """The mechanism with up to three torsion springs more, on single joints and on sums; none without hinges."""
+    rng = np.random.default_rng(seed)
+    hinges = [joint.name for joint in m.joints if joint.type == "revolute"]
+    added = []
+    for i in range(int(rng.integers(1, 4)) if hinges else 0):
+        some = rng.choice(hinges, int(rng.integers(1, min(3, len(hinges)) + 1)), replace=False)
+        terms = tuple((str(name), float(rng.choice(RATIOS))) for name in some)
+        added.append(TorsionSpring(f"t{i}", terms, float(rng.uniform(0.5, 20)), float(rng.uniform(-3, 3))))
+    return m.with_springs((*m.springs, *added))
 
 
 def random_poses(mechanism: Mechanism, count: int, seed: int = 0) -> np.ndarray:

@@ -8,8 +8,8 @@ from unicodedata import category
 
 from hypothesis import strategies as st
 
+from equipoise.elements import Spring
 from equipoise.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from equipoise.spring import Spring
 
 ODD = [
     "yes",
@@ -104,7 +104,7 @@ def mechanisms(draw: st.DrawFn, most_bodies: int = 5) -> Mechanism:
         springs=tuple(springs),
         masses=tuple(points),
         gravity=draw(vectors),
-        workspace=Workspace(draw(st.integers(1, 10_000_000))),
+        workspace=Workspace(draw(st.integers(1, 1_000_000))),
         provenance=draw(st.dictionaries(texts, plain, max_size=3)),
     )
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -20,7 +21,7 @@ from test_mjcf import set_pose
 from zoo import counterweight, exact_pendulum
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.reproduce.cho2012 import shoulder
@@ -118,7 +119,7 @@ def test_the_disk_torque_is_the_cross_product_of_24():
 def test_the_mechanism_is_the_equations(arrangement, ratio):
     """Bodies, couplings and springs give (2), (3), (15) and (25), with the paper's angles."""
     m = shoulder()
-    springs = {"b": B, "h": H}
+    springs: dict[str, Any] = {"b": B, "h": H}
     made = eq.design(m, "bevel", arrangement=arrangement, gear_ratio=ratio, **springs) if ratio != 3 else None
     if made is None:  # whole turns of roll: no spring helps, so the ranges are narrowed
         m = replace(m, joints=(replace(m.joints[0], range=(-1.0, 1.0)), m.joints[1]))
@@ -179,14 +180,15 @@ def weight_of(made: eq.Design) -> float:
 @pytest.mark.parametrize("arrangement", d.ARRANGEMENTS)
 def test_two_of_b_h_and_k_give_the_third_on_each_side(arrangement):
     weight = 6.7 * 9.81 * 0.164
-    for asked in (
+    every: list[dict[str, Any]] = [
         {},
         {"b": 0.05},
         {"b": {"left": 0.05, "right": 0.03}, "h": 0.07},
         {"stiffness": {"left": 1000.0}, "h": {"*": 0.05, "right": 0.08}},
         {"stiffness": 1500.0},
         {"stiffness": weight / 2 / 0.05 / 0.07, "b": 0.05, "h": 0.07},  # all three, where they fit
-    ):
+    ]
+    for asked in every:
         made = eq.design(shoulder(), "bevel", arrangement=arrangement, **asked)
         assert made.balance.exact
         for spring in made.mechanism.springs:

@@ -8,8 +8,8 @@ from robots import lee_chen, robot
 
 import equipoise as eq
 from equipoise.energy.blocks import StiffnessBlocks
+from equipoise.energy.evaluate import Potential
 from equipoise.energy.planar import Installation, PlanarArm, obstacles
-from equipoise.energy.potential import Potential
 from equipoise.errors import UnsupportedError
 
 ARM = Path(__file__).parents[1] / "examples" / "mechanisms" / "lee_chen_arm.yaml"

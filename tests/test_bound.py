@@ -8,8 +8,9 @@ from robots import lee_chen, planar_arm, robot
 from equipoise.synthesis import gram
 from equipoise.synthesis.bound import least_rms
 from equipoise.synthesis.minimax import Peak
-from equipoise.synthesis.polish import Springs, project, residual
+from equipoise.synthesis.polish import Parts, residual
 from equipoise.synthesis.problem import Problem
+from equipoise.synthesis.spring_block import smat
 
 CASES = [
     (lee_chen(), {"span": 1}),
@@ -23,15 +24,16 @@ def by_cvxpy(compressed: gram.Gram) -> float:
     """The same program in its textbook form, by another solver."""
     problem = compressed.problem
     N = [cp.Variable((7, 7), PSD=True) for _ in problem.pairs]
-    scale = 1 / np.abs(compressed.Q).max()
-    w = sum(cp.hstack([cp.trace(scale * Q @ M) for Q in Qs]) for Qs, M in zip(compressed.Q, N, strict=True))
+    scale = 1 / max(np.abs(columns).max() for columns in compressed.columns)
+    every = [smat(columns) for columns in compressed.columns]
+    w = sum(cp.hstack([cp.trace(scale * Q @ M) for Q in Qs]) for Qs, M in zip(every, N, strict=True))
     limits = []
     for pair, M in zip(problem.pairs, N, strict=True):
         for name, first in zip(pair, (0, 4), strict=True):
             diagonal = [M[i, i] for i in range(first, first + 3)]
             limits += (
                 [sum(diagonal) <= M[3, 3]]
-                if problem.regions[name].shape == "ball"
+                if problem.attachments[name].shape == "ball"
                 else [d <= M[3, 3] for d in diagonal]
             )
     torque = cp.norm(cp.hstack([w + compressed.d, compressed.rest]))
@@ -51,10 +53,9 @@ def test_no_random_design_undercuts_the_bound(mechanism, options):
     compressed = gram.build(Problem.of(mechanism, radius=0.15, **options))
     bound = least_rms(compressed).value
     rng = np.random.default_rng(0)
-    pair = rng.integers(len(compressed.problem.pairs), size=(2000, 4))
-    is_box = np.full((2000, 4, 2), options.get("shape") == "box")
-    u = project(rng.uniform(-1, 1, (2000, 4, 2, 3)), is_box)
-    springs = Springs(pair, np.exp(rng.uniform(-3, 8, (2000, 4))), u)
+    pair = rng.integers(len(compressed.blocks), size=(2000, 4))
+    u = rng.uniform(-1, 1, (2000, 4, 6))
+    springs = Parts.at(compressed, pair, np.exp(rng.uniform(-3, 8, (2000, 4))), u)
     value = np.hypot(np.linalg.norm(residual(compressed, springs), axis=1), compressed.rest)
     assert value.min() >= bound - 1e-9
 
@@ -66,8 +67,9 @@ def test_acceptance_ur5_span_2():
 
 
 def test_the_samples_do_not_change_the_size_of_the_solve():
-    sizes = {gram.build(Problem.of(robot("ur5"), span=2, radius=0.15, samples=count)).Q.shape for count in (1000, 5000)}
-    assert sizes == {(11, 28, 7, 7)}
+    grams = [gram.build(Problem.of(robot("ur5"), span=2, radius=0.15, samples=count)) for count in (1000, 5000)]
+    assert [{columns.shape for columns in found.columns} for found in grams] == [{(28, 28)}] * 2
+    assert [len(found.columns) for found in grams] == [11, 11]
 
 
 def test_more_pairs_or_larger_regions_never_leave_more():
@@ -89,10 +91,9 @@ def test_peak_bound_holds_for_random_designs_and_is_reached():
     bound = peak.bound().value
     rng = np.random.default_rng(0)
     for _ in range(200):
-        pair = rng.integers(len(compressed.problem.pairs), size=(1, 3))
-        u = project(rng.uniform(-1, 1, (1, 3, 2, 3)), np.zeros((1, 3, 2), bool))
-        springs = Springs(pair, np.exp(rng.uniform(0, 7, (1, 3))), u)
+        pair = rng.integers(len(compressed.blocks), size=(1, 3))
+        springs = Parts.at(compressed, pair, np.exp(rng.uniform(0, 7, (1, 3))), rng.uniform(-1, 1, (1, 3, 6)))
         assert np.abs(peak.torque(springs)).max() >= bound - 1e-9
-    start = Springs(np.array([[0, 1, 2]]), np.full((1, 3), 100.0), np.full((1, 3, 2, 3), 0.2))
+    start = Parts(np.array([[0, 1, 2]]), np.full((1, 3), 100.0), np.full((1, 3, 6), 0.2))
     _, value = peak.polish(start)
     assert bound - 1e-9 <= value <= 1.3 * bound

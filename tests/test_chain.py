@@ -13,7 +13,7 @@ from robots import planar_arm, robot
 from zoo import counterweight, gantry, lenzo_revolute, lenzo_spherical, mirrored_pair, parallelogram_lamp
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.synthesis.chain import chain, reasons
 
 

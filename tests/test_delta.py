@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
 from equipoise.mechanism import Mechanism
@@ -18,7 +18,7 @@ from equipoise.synthesis.delta.rocker import Guide
 
 ODD = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, rods=0.12, com_2=0.15, com_4=0.3)
 """Nothing is special: AB is not CD, the radii differ, mass centres are off the middle."""
-WEIGHTS = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35}
+WEIGHTS: dict[str, Any] = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35}
 WEIGHTS |= {"spring_7": 1.8, "spring_10": 0.5, "spring_11": 0.6}
 
 

@@ -12,7 +12,7 @@ from loop_zoo import EXAMPLES
 from zoo import ZOO
 
 from equipoise import check, load
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.mechanism import Mechanism
 from equipoise.report.figure import save_figure

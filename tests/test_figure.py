@@ -11,6 +11,7 @@ from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.balance import check
+from equipoise.coordinate import Coordinate
 from equipoise.errors import InputError
 from equipoise.io import files
 from equipoise.kinematics import Tree, sample
@@ -203,7 +204,7 @@ def test_of_many_coordinates_and_springs_the_first_are_shown(tmp_path):
     save_figure(many, tmp_path / "many.svg", balance=balance)
     shown = texts(tmp_path / "many.svg").splitlines()
     assert "and 4 more springs" in shown
-    rows = loads.shown(balance)["rad"]
+    rows = loads.shown(balance)[Coordinate]
     assert len(rows) == loads.MOST
     assert [i for i in range(14) if f"joint {i}" in shown] == rows.tolist()
     hidden = np.setdiff1d(np.arange(14), rows)

@@ -10,25 +10,28 @@ import equipoise as eq
 from equipoise.energy import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.synthesis import gram
-from equipoise.synthesis.polish import Springs, residual
+from equipoise.synthesis.polish import Parts, residual
 from equipoise.synthesis.problem import Problem, Region
 
 
-def torque_of(problem: Problem, springs: Springs, q: np.ndarray) -> np.ndarray:
-    """Weighted torques (N, n) of gravity and a spring set, computed from real springs."""
-    real = []
-    for i, (pair, k, y) in enumerate(zip(springs.pair[0], springs.k[0], springs.y[0], strict=True)):
-        a, b = problem.pairs[pair]
-        z = problem.lift((a, b)) @ y
-        real.append(eq.Spring(f"{i}", a, tuple(z[:3]), b, tuple(z[4:]), float(k)))
-    mechanism = replace(problem.mechanism, springs=(*problem.mechanism.springs, *real))
-    return Potential(mechanism)(q).torque * problem.weights
+def with_parts(problem: Problem, parts: Parts) -> eq.Mechanism:
+    """The mechanism with the real elements of one set of parts."""
+    mechanism = problem.kept
+    for number, k, u in zip(parts.block[0], parts.k[0], parts.u[0], strict=True):
+        block = problem.blocks[number]
+        mechanism = block.add(mechanism, float(k), u[: block.shape])
+    return mechanism
 
 
-def some_springs(problem: Problem, seed: int = 0) -> Springs:
+def torque_of(problem: Problem, parts: Parts, q: np.ndarray) -> np.ndarray:
+    """Weighted torques (N, n) of gravity and a set of parts, computed from real elements."""
+    return Potential(with_parts(problem, parts))(q).torque * problem.scale
+
+
+def some_springs(problem: Problem, seed: int = 0) -> Parts:
     rng = np.random.default_rng(seed)
-    pair = rng.integers(len(problem.pairs), size=(1, 4))
-    return Springs(pair, rng.uniform(50, 500, (1, 4)), rng.uniform(-0.5, 0.5, (1, 4, 2, 3)))
+    block = rng.integers(len(problem.blocks), size=(1, 4))
+    return Parts(block, rng.uniform(50, 500, (1, 4)), rng.uniform(-0.5, 0.5, (1, 4, 6)))
 
 
 def slides() -> eq.Mechanism:
@@ -73,15 +76,9 @@ def test_mean_stored_energy_is_that_of_the_springs():
     averaged, sampled = gram.build(problem), gram.build(replace(problem, samples=20_000))
     springs = some_springs(problem)
     q = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 3))
-    mechanism = problem.mechanism
-    for i in range(4):
-        a, b = problem.pairs[springs.pair[0, i]]
-        z = problem.lift((a, b)) @ springs.y[0, i]
-        spring = eq.Spring(f"{i}", a, tuple(z[:3]), b, tuple(z[4:]), float(springs.k[0, i]))
-        mechanism = mechanism.with_springs([*mechanism.springs, spring])
-    expected = Potential(mechanism)(q).springs.sum(axis=1).mean()
-    assert springs.store(averaged)[0] == pytest.approx(expected, rel=0.02)
-    assert springs.store(sampled)[0] == pytest.approx(expected, rel=0.02)
+    expected = Potential(with_parts(problem, springs))(q).springs.sum(axis=1).mean()
+    assert springs.cost(averaged)[0] == pytest.approx(expected, rel=0.02)
+    assert springs.cost(sampled)[0] == pytest.approx(expected, rel=0.02)
 
 
 def test_limited_joints_and_slides_are_sampled_whole_turns_are_not():
@@ -106,10 +103,3 @@ def test_a_spring_between_the_ground_and_a_vertical_axis_is_recognised_as_useles
     fixed = eq.Mechanism("post", (eq.Body("post", 1.0),), (eq.Joint("weld", "fixed", "world", "post"),))
     problem = Problem(fixed, (("world", "post"),), {"world": Region.ball(0.1), "post": Region.ball(0.1)})
     assert gram.build(problem).useful == []
-
-
-def test_svec_keeps_the_inner_product_and_smat_undoes_it():
-    A, B = np.random.default_rng(0).normal(size=(2, 5, 7, 7))
-    A, B = A + A.swapaxes(1, 2), B + B.swapaxes(1, 2)
-    assert np.einsum("ni,ni->n", gram.svec(A), gram.svec(B)) == pytest.approx(np.einsum("nij,nij->n", A, B))
-    assert np.allclose(gram.smat(gram.svec(A)), A)

@@ -24,8 +24,8 @@ from equipoise.energy.kernel import Kernel
 from equipoise.energy.kernel.generated import Generated
 from equipoise.energy.kernel.kernel import CACHE, CHUNK, LINE, TIERS
 from equipoise.energy.kernel.trace import Trace
-from equipoise.energy.potential import lumped_masses
 from equipoise.errors import UnsupportedError
+from equipoise.masses import lumped_masses
 from equipoise.mechanism import Mechanism
 
 ROUNDING = 1e-13
@@ -47,7 +47,7 @@ def disagreement(mechanism: Mechanism, q: np.ndarray, tier: str | None) -> float
         float(np.abs(found - known).max(initial=0)) / scale
         for found, known, scale in (
             (parts.gravity, state.gravity, load),
-            (parts.length, state.length, reach),
+            (parts.path, state.path, reach),
             (parts.gravity_torque, state.gravity_torque, load * ratio),
             (parts.spring_torque, state.spring_torque, (pull + load) * ratio),
             (total.energy, state.energy, pull + load),

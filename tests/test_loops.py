@@ -26,7 +26,7 @@ from loop_zoo import (
 from scipy.spatial.transform import Rotation
 
 from equipoise.balance import check
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.branch import Branch, Status

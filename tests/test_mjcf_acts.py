@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from engine import Engine
+from equipoise.energy.potential import Potential
 from random_models import RandomModel
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
 from equipoise.errors import EquipoiseWarning, InputError, SlipWarning
 from equipoise.kinematics import Tree
 from equipoise.kinematics.sampling import sample

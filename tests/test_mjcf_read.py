@@ -19,7 +19,7 @@ from zoo import ZOO, exact_pendulum
 
 import equipoise as eq
 from equipoise.cli.export import assembled
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree

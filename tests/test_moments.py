@@ -9,7 +9,7 @@ from robots import robot
 from zoo import gantry, planar_two_link, vertical_slide
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree
 from equipoise.reproduce.lin2010 import TABLE_2, arm
 from equipoise.synthesis.pseudobase.moments import moments, segments, slide_faults

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from equipoise.errors import InputError
 from equipoise.kinematics.motion import Move, follow
 
 
@@ -20,5 +21,5 @@ def test_held_before_between_and_after():
 
 
 def test_no_such_coordinate():
-    with pytest.raises(ValueError, match="not in list"):
+    with pytest.raises(InputError, match="no coordinate 'c'"):
         follow(("a",), [Move("c", 0, 1, 0, 1)], np.zeros(1))

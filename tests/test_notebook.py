@@ -39,9 +39,15 @@ class Text(HTMLParser):
         self.words += data
 
 
+def html(value: Shown) -> str:
+    found = value._repr_html_()
+    assert found is not None
+    return found
+
+
 def test_a_balance_shows_its_verdict_picture_springs_and_torques():
     balance = eq.check(pendulum())
-    shown = Text(balance._repr_html_())
+    shown = Text(html(balance))
     for text in ("EXACT", "196.2", "N m", "Schematic of", balance.coordinates[0]):
         assert text in shown.words
     assert balance._repr_svg_() == to_text(balance.mechanism)
@@ -49,40 +55,53 @@ def test_a_balance_shows_its_verdict_picture_springs_and_torques():
 
 def test_a_design_says_how_far_from_the_best_it_is():
     design = eq.design(lee_chen(), span=3, radius=0.2)
-    shown = Text(design._repr_html_())
+    shown = Text(html(design))
     for text in ("method convex", "rms torque", "of the best", "EXACT"):
         assert text in shown.words
-    assert ElementTree.fromstring(design._repr_svg_()).tag.endswith("svg")
+    assert ElementTree.fromstring(design._repr_svg_() or "").tag.endswith("svg")
     assert design._repr_svg_() == to_text(design.mechanism)
 
 
 def test_pictures_of_different_mechanisms_do_not_share_identifiers():
-    one, two = (Text(eq.check(pendulum(k))._repr_html_()).ids for k in (196.2, 100.0))
+    one, two = (Text(html(eq.check(pendulum(k)))).ids for k in (196.2, 100.0))
     assert one
     assert not set(one) & set(two)
 
 
 @pytest.mark.parametrize("name", ZOO)
 def test_all_of_the_zoo(name):
-    assert ZOO[name]().mechanism.name in Text(eq.check(ZOO[name]().mechanism, samples=64)._repr_html_()).words
+    assert ZOO[name]().mechanism.name in Text(html(eq.check(ZOO[name]().mechanism, samples=64))).words
 
 
 def test_names_cannot_break_out():
     evil = "</svg><b>x"
     mechanism = pendulum().with_springs([eq.Spring(evil, "world", (0, 0, 0.2), "arm", (0.15, 0, 0), 196.2)])
-    html = eq.check(mechanism)._repr_html_()
-    assert "<b>" not in html
-    assert evil in Text(html).words
+    shown = html(eq.check(mechanism))
+    assert "<b>" not in shown
+    assert evil in Text(shown).words
 
 
 def test_nothing_without_springs_or_joints_breaks_it():
     for mechanism in (eq.Mechanism("empty"), pendulum().with_springs([])):
-        assert mechanism.name in Text(eq.check(mechanism)._repr_html_()).words
+        assert mechanism.name in Text(html(eq.check(mechanism))).words
 
 
-def test_what_does_not_know_how_to_show_itself_says_so():
-    with pytest.raises(TypeError, match="Odd does not show itself"):
-        type("Odd", (Shown,), {})()._repr_html_()
+def test_of_what_nobody_draws_a_notebook_prints_the_text():
+    odd = type("Odd", (Shown,), {})()
+    assert odd._repr_html_() is None
+    assert odd._repr_svg_() is None
+
+
+def test_the_first_value_that_is_shown_loads_the_report_and_nothing_else_does():
+    code = (
+        "import sys, equipoise as eq\n"
+        f"balance = eq.check(eq.load({str(PENDULUM)!r}), samples=64)\n"
+        "assert not any(name.startswith('equipoise.report') for name in sys.modules)\n"
+        "assert 'EXACT' in balance._repr_html_() and 'equipoise.report' in sys.modules\n"
+        "print('shown')\n"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (found.stdout, found.stderr) == ("shown\n", "")
 
 
 def test_it_needs_no_extra():

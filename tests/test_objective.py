@@ -12,13 +12,13 @@ from test_gram import some_springs, torque_of
 from equipoise.kinematics import Tree, sample
 from equipoise.synthesis import gram
 from equipoise.synthesis.objective import Quadratic, mean_square
-from equipoise.synthesis.polish import Springs
+from equipoise.synthesis.polish import Parts
 from equipoise.synthesis.problem import Problem
 
 
-def batch(problem: Problem, count: int) -> Springs:
-    parts = [some_springs(problem, seed) for seed in range(count)]
-    return Springs(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("pair", "k", "u")))
+def batch(problem: Problem, count: int) -> Parts:
+    sets = [some_springs(problem, seed) for seed in range(count)]
+    return Parts(*(np.concatenate([getattr(one, name) for one in sets]) for name in ("block", "k", "u")))
 
 
 @pytest.mark.parametrize("name", ["ur5", "panda"])
@@ -55,7 +55,7 @@ def test_quadratic_form_and_its_gradient() -> None:
     one = some_springs(compressed.problem)
     form = Quadratic.of(compressed, one)
     k = np.random.default_rng(0).uniform(10, 500, (20, one.k.shape[1]))
-    many = Springs(np.repeat(one.pair, 20, axis=0), k, np.repeat(one.u, 20, axis=0))
+    many = Parts(np.repeat(one.block, 20, axis=0), k, np.repeat(one.u, 20, axis=0))
     value, by_k, _ = mean_square(compressed, many)
     found, gradient = form(k)
     np.testing.assert_allclose(found, value, rtol=1e-10)

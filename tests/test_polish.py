@@ -5,15 +5,15 @@ import pytest
 from robots import lee_chen, planar_arm
 
 from equipoise.synthesis import gram
-from equipoise.synthesis.polish import Springs, best_stiffness, jacobian, polish, project, residual
+from equipoise.synthesis.polish import Parts, best_amounts, jacobian, polish, residual
 from equipoise.synthesis.problem import Problem, Region
 
 
-def a_batch(compressed: gram.Gram, batch: int, springs: int, seed: int = 0) -> Springs:
+def a_batch(compressed: gram.Gram, batch: int, springs: int, seed: int = 0) -> Parts:
     rng = np.random.default_rng(seed)
-    pair = rng.integers(len(compressed.problem.pairs), size=(batch, springs))
-    u = project(rng.uniform(-1, 1, (batch, springs, 2, 3)), compressed.box[pair])
-    return Springs(pair, rng.uniform(50, 500, (batch, springs)), u)
+    pair = rng.integers(len(compressed.blocks), size=(batch, springs))
+    u = rng.uniform(-1, 1, (batch, springs, 6))
+    return Parts.at(compressed, pair, rng.uniform(50, 500, (batch, springs)), u)
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,6 @@ def compressed() -> gram.Gram:
 def test_jacobian_is_the_central_difference_to_second_order(compressed):
     springs = a_batch(compressed, 3, 2)
     J = jacobian(compressed, springs)
-    wide = np.ones((3, 2, 2), bool)  # a box: the projection then leaves these interior points alone
 
     def error(h: float) -> float:
         worst = 0.0
@@ -32,13 +31,13 @@ def test_jacobian_is_the_central_difference_to_second_order(compressed):
             for v in range(7):
                 step = np.zeros((3, 2, 7))
                 step[:, s, v] = h
-                inner = Springs(springs.pair, springs.k, 0.3 * springs.u)
-                plus, minus = inner.moved(step, wide), inner.moved(-step, wide)
+                inner = Parts(springs.block, springs.k, 0.3 * springs.u)  # the regions leave it alone
+                plus, minus = inner.moved(compressed, step), inner.moved(compressed, -step)
                 slope = (residual(compressed, plus) - residual(compressed, minus)) / (2 * h)
-                worst = max(worst, np.abs(slope - jacobian(compressed, inner)[:, :, 7 * s + v]).max())
+                worst = max(worst, np.abs(slope - jacobian(compressed, inner)[:, s, v]).max())
         return worst
 
-    assert J.shape == (3, len(compressed.d), 14)
+    assert J.shape == (3, 2, 7, len(compressed.d))
     assert error(1e-3) < 1e-4 * np.abs(J).max()
     assert error(1e-3) < 0.02 * error(1e-2) + 1e-12
 
@@ -46,10 +45,11 @@ def test_jacobian_is_the_central_difference_to_second_order(compressed):
 @pytest.mark.parametrize("shape", ["ball", "box"])
 def test_polish_stays_in_the_regions_and_never_gets_worse(shape):
     compressed = gram.build(Problem.of(lee_chen(), span=1, radius=0.1, shape=shape))
-    start = best_stiffness(compressed, a_batch(compressed, 40, 3))
+    start = best_amounts(compressed, a_batch(compressed, 40, 3))
     before = np.hypot(np.linalg.norm(residual(compressed, start), axis=1), compressed.rest)
     after, value = polish(compressed, start)
-    size = np.abs(after.u).max(axis=-1) if shape == "box" else np.linalg.norm(after.u, axis=-1)
+    ends = after.u.reshape(40, 3, 2, 3)
+    size = np.abs(ends).max(axis=-1) if shape == "box" else np.linalg.norm(ends, axis=-1)
     assert size.max() <= 1 + 1e-12
     assert (after.k > 0).all()
     assert (value <= before + 1e-12).all()
@@ -60,13 +60,13 @@ def test_a_pendulum_is_polished_to_rounding():
     pendulum = planar_arm([2.0], [0.5], [0.3])
     regions = {"world": Region.ball(0.2), "link2": Region.box((0.2, 0.01, 0.01), (0.1, 0, 0))}
     compressed = gram.build(Problem(pendulum, (("world", "link2"),), regions))
-    start = best_stiffness(compressed, a_batch(compressed, 16, 1))
+    start = best_amounts(compressed, a_batch(compressed, 16, 1))
     springs, value = polish(compressed, start)
     assert value.min() < 1e-12
     best = value.argmin()
-    z = compressed.problem.lift(("world", "link2")) @ springs.y[best, 0]
+    spring = compressed.blocks[0].add(pendulum, springs.k[best, 0], springs.u[best, 0]).springs[0]
     # k a x b = m g l and a . b = 0 in the plane of motion, the ground end a and the link's end b
-    (ax, az), (bx, bz), k = z[[0, 2]], z[[4, 6]], springs.k[best, 0]
+    (ax, _, az), (bx, _, bz), k = spring.p_a, spring.p_b, spring.stiffness
     assert k * (az * bx - ax * bz) == pytest.approx(2.0 * 9.81 * 0.3, rel=1e-9)
     assert k * (ax * bx + az * bz) == pytest.approx(0.0, abs=1e-9)
 

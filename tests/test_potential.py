@@ -17,12 +17,12 @@ from scipy.spatial.transform import Rotation
 from test_kinematics import slow_poses, slow_values
 from zoo import EXACT, PENDULUM_K, pendulum
 
+from equipoise.elements import Spring, Vec3
 from equipoise.energy import Potential
 from equipoise.errors import UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
 from equipoise.mechanism import WORLD, Body, Joint, Mechanism
-from equipoise.spring import Spring, Vec3
 
 pin = peer("pinocchio")
 
@@ -55,7 +55,7 @@ def test_energy(seed: int) -> None:
         gravity, springs, lengths = slow_energy(m, q[i])
         assert state.gravity[i] == pytest.approx(gravity, rel=1e-12, abs=1e-11)
         np.testing.assert_allclose(state.springs[i], springs, rtol=1e-11, atol=1e-11)
-        np.testing.assert_allclose(state.length[i], lengths, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(state.path[i], lengths, rtol=1e-12, atol=1e-13)
         assert state.energy[i] == pytest.approx(gravity + sum(springs), rel=1e-12, abs=1e-10)
 
 
@@ -290,7 +290,7 @@ def assert_same(m: Mechanism, other: Mechanism, seed: int) -> None:
         first, second = getattr(a, part)[:, order], getattr(b, part)
         np.testing.assert_allclose(second, first, rtol=0, atol=1e-12 * (10 + np.abs(first).max(initial=0)))
     np.testing.assert_allclose(b.springs, a.springs, rtol=1e-11, atol=1e-10)
-    np.testing.assert_allclose(b.length, a.length, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(b.path, a.path, rtol=1e-11, atol=1e-12)
     assert np.ptp(b.gravity - a.gravity) <= 1e-11 * (1 + np.abs(a.gravity).max())
 
 
@@ -339,7 +339,7 @@ def test_scaling(seed: int) -> None:
     for part in ("gravity", "springs", "gravity_torque", "spring_torque"):
         size = np.abs(getattr(a, part)).max(initial=0)
         np.testing.assert_allclose(getattr(b, part), s * getattr(a, part), rtol=1e-12, atol=1e-13 * size)
-    np.testing.assert_array_equal(a.length, b.length)
+    np.testing.assert_array_equal(a.path, b.path)
 
 
 # Known answers -------------------------------------------------------------------------------------------------------
@@ -380,8 +380,8 @@ def test_batches_are_the_same_as_poses_one_by_one(monkeypatch: pytest.MonkeyPatc
     m = random_mechanism(3)
     q = random_poses(m, 50)
     whole = Potential(m)(q)
-    monkeypatch.setattr("equipoise.energy.potential.CHUNK_ENTRIES", 1)
-    for part in ("gravity", "springs", "length", "gravity_torque", "spring_torque"):
+    monkeypatch.setattr("equipoise.energy.reference.CHUNK_ENTRIES", 1)
+    for part in ("gravity", "springs", "path", "gravity_torque", "spring_torque"):
         np.testing.assert_allclose(getattr(Potential(m)(q), part), getattr(whole, part), rtol=1e-13, atol=1e-13)
     assert Potential(m)(q[:0]).energy.shape == (0,)
     with pytest.raises(ValueError, match="expected"):
@@ -392,4 +392,4 @@ def test_coordinates_are_in_the_order_of_the_file() -> None:
     for seed in range(20):
         m = random_mechanism(seed)
         assert Tree.of(m).coordinates == m.coordinates
-        assert len(m.coordinate_units) == len(m.coordinates)
+        assert [c.turns for c in m.coordinates] == Tree.of(m).turns.tolist()

@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -19,7 +20,7 @@ from test_mjcf import set_pose
 from zoo import counterweight, gantry, lenzo_spherical, mirrored_pair, parallelogram_lamp, vertical_slide
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.synthesis import METHODS
@@ -163,7 +164,7 @@ def test_two_of_stiffness_l_CA_and_l_CB_give_the_third():
         (eq.Body("arm", 2.0, (0.3, 0, 0)),),
         (eq.Joint("shoulder", "revolute", "world", "arm", axis=(0, -1, 0)),),
     )
-    for asked, K in (
+    every: list[tuple[dict[str, Any], float]] = [
         ({}, weight / 0.15**2),  # half the link's size
         ({"l_CA": 0.2}, weight / (0.2 * 0.15)),
         ({"l_CB": 0.2}, weight / (0.2 * 0.15)),
@@ -171,7 +172,8 @@ def test_two_of_stiffness_l_CA_and_l_CB_give_the_third():
         ({"stiffness": 300.0}, 300.0),
         ({"stiffness": 300.0, "l_CA": 0.2}, 300.0),
         ({"stiffness": {"arm": 300.0}, "l_CB": {"*": 0.2}}, 300.0),
-    ):
+    ]
+    for asked, K in every:
         design = eq.design(m, "pseudobase", **asked)
         (spring,) = design.mechanism.springs
         lengths = (

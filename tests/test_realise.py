@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from robots import TABLE_5A, TABLE_5B, lee_chen, lee_chen_springs
 
 import equipoise as eq
+from equipoise.energy.evaluate import Potential
 from equipoise.energy.planar import PlanarArm
-from equipoise.energy.potential import Potential
 from equipoise.errors import InputError
 from equipoise.hardware import Envelope, ExtensionSpring, Options, bill, realisations
 from equipoise.hardware.leaves import Torques, leaves

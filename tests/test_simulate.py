@@ -7,6 +7,7 @@ import warnings
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,7 +40,14 @@ def ur5() -> eq.Mechanism:
 def delta() -> eq.Mechanism:
     """Full balance with data of which nothing is special."""
     bare = DeltaRobot(base=0.25, platform=0.1, upper=0.4, lower=0.7, com_2=0.15, com_4=0.3).mechanism()
-    masses = {"link_8": 0.3, "link_9": 0.2, "frame": 0.4, "link_2p": 0.35, "spring_7": 1.8, "spring_10": 0.5}
+    masses: dict[str, Any] = {
+        "link_8": 0.3,
+        "link_9": 0.2,
+        "frame": 0.4,
+        "link_2p": 0.35,
+        "spring_7": 1.8,
+        "spring_10": 0.5,
+    }
     return eq.design(bare, "delta", BF=0.12, CS=0.1, **masses).mechanism
 
 
@@ -188,7 +196,7 @@ def test_a_delta_robot_with_its_rod_pairs():
     assert found.stays
     assert found.design.constraint_error < 1e-5
     # what is not balanced agrees with ours, through the loops
-    from equipoise.energy.potential import Potential
+    from equipoise.energy.evaluate import Potential
 
     np.testing.assert_allclose(without, Potential(m.with_springs(()))(q).torque, rtol=1e-8, atol=1e-8)
 
@@ -240,7 +248,7 @@ def test_the_motion_of_lin2010():
     every = slice(None, None, 10)
     found = play(m, lin2010.TIMES[every], lin2010.motion()[every], SPHERE)
     assert np.ptp(found.gravity + found.springs) < 1e-9 * np.ptp(found.gravity)
-    from equipoise.energy.potential import Potential
+    from equipoise.energy.evaluate import Potential
 
     ours = Potential(m)(lin2010.motion()[every]).gravity
     np.testing.assert_allclose(found.gravity, ours - ours[0], atol=1e-6 * np.ptp(ours))

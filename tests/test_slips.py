@@ -11,10 +11,10 @@ from robots import robot
 
 import equipoise as eq
 from equipoise import io
+from equipoise.elements import Spring, TorsionSpring
 from equipoise.errors import SlipWarning
 from equipoise.mechanism import Body, Joint, Loop, Mechanism, PointMass
 from equipoise.slips import far, slips, twice, weightless
-from equipoise.spring import Spring
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").rglob("*.yaml"))
 
@@ -67,6 +67,9 @@ MEANT = {
     "several turns": arm(range=(-4 * np.pi, 4 * np.pi)),
     "a link that a spring holds": replace(arm(), bodies=(arm().bodies[0], Body("fore"))).with_springs(
         [Spring("s", "world", (0, 0, 0.2), "fore", (0.1, 0, 0), 100)]
+    ),
+    "a link that a torsion spring holds": replace(arm(), bodies=(arm().bodies[0], Body("fore"))).with_springs(
+        [TorsionSpring("s", (("elbow", 1.0),), 3.0)]
     ),
     "a link that a loop holds": replace(
         arm(), bodies=(arm().bodies[0], Body("fore")), loops=(Loop("fore", (0.3, 0, 0), "world", (0.3, 0, 0.3)),)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from robots import robot
 
 import equipoise as eq
-from equipoise.energy.potential import Potential
+from equipoise.energy.evaluate import Potential
 from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
 from equipoise.robust import Scatter, tolerance

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from peers import peer
 
+from equipoise.elements import Spring
 from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import urdf
 from equipoise.io.lint import inertia_lint
 from equipoise.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass
-from equipoise.spring import Spring
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 NAMES = ("ur5", "ur10", "panda", "xarm7", "human")

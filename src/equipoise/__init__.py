@@ -10,16 +10,18 @@ The names below are the whole public interface::
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from . import notebook
 from ._version import __version__
+from .elements import Spring, TorsionSpring
 from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from .spring import Spring
 
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .synthesis import Design, design
+    from .synthesis import Design, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
@@ -30,13 +32,17 @@ __all__ = [
     "Loop",
     "Mechanism",
     "PointMass",
+    "Problem",
+    "Region",
     "Spring",
+    "TorsionSpring",
     "Workspace",
     "__version__",
     "check",
     "design",
     "load",
     "save",
+    "solve",
 ]
 
 _LAZY = {
@@ -45,15 +51,18 @@ _LAZY = {
     "load": "io",
     "save": "io",
     "Design": "synthesis",
+    "Problem": "synthesis",
+    "Region": "synthesis",
     "design": "synthesis",
+    "solve": "synthesis",
 }
+
+notebook.supplied_by(lambda: import_module(f"{__name__}.report.notebook"))
 
 
 def __getattr__(name: str) -> Any:
     # what computes is imported on first use, so that `import equipoise` stays quick
     if name in _LAZY:
-        from importlib import import_module
-
         return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'equipoise' has no attribute '{name}'")
 

@@ -13,16 +13,18 @@ from typing import Any, Literal
 import numpy as np
 
 from .arrays import Array
+from .coordinate import Coordinate
 from .energy.closed import ClosedEnergy
+from .energy.evaluate import Potential
 from .energy.fourier import EXACT, FourierEnergy
-from .energy.frames import MAX_TERMS, NoFourierForm
+from .energy.frames import MAX_TERMS
 from .energy.peak import climb
-from .energy.potential import Potential, State
-from .errors import InputError
+from .energy.reference import State
+from .errors import InputError, NoFourierForm
 from .kinematics import Linkage, Mobility, Tree, sample
 from .mechanism import Mechanism
 from .notebook import Shown
-from .validate import MAX_SAMPLES, whole_number
+from .validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
 
@@ -56,11 +58,25 @@ class Loads:
 
 @dataclass(frozen=True)
 class SpringUse:
-    """The largest and least length [m] and the largest force magnitude [N] of a spring over the poses."""
+    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m]."""
 
-    max_length: float
-    min_length: float
-    max_force: float
+    path: Range
+    force: Range
+
+    @property
+    def min_length(self) -> float:
+        """The shortest it gets [m]."""
+        return self.path[0]
+
+    @property
+    def max_length(self) -> float:
+        """The longest it gets [m]."""
+        return self.path[1]
+
+    @property
+    def max_force(self) -> float:
+        """The largest force magnitude [N]."""
+        return max(map(abs, self.force))
 
 
 @dataclass(frozen=True)
@@ -96,14 +112,14 @@ class Balance(Shown):
     use: tuple[SpringUse, ...]
 
     @property
-    def coordinates(self) -> tuple[str, ...]:
-        """The independent coordinates, in the file's order."""
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The independent coordinates, in the file's order: names that know their units."""
         return Tree.of(self.mechanism).coordinates
 
     @property
     def units(self) -> tuple[str, ...]:
         """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return Tree.of(self.mechanism).units
+        return tuple(coordinate.unit for coordinate in self.coordinates)
 
     @property
     def mobility(self) -> Mobility | None:
@@ -114,7 +130,7 @@ class Balance(Shown):
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
-        return largest_share(self.residual.max, self.unbalanced.max, self.units)
+        return largest_share(self.residual.max, self.unbalanced.max, self.coordinates)
 
     def balanced(self, tolerance: float = EXACT, torque: float | None = None) -> bool:
         """Whether it is exact, or the residual stays within a share of the unbalanced torque, or within `torque`."""
@@ -150,18 +166,7 @@ class Balance(Shown):
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
-                {
-                    "name": spring.name,
-                    "body_a": spring.body_a,
-                    "p_a": list(spring.p_a),
-                    "body_b": spring.body_b,
-                    "p_b": list(spring.p_b),
-                    "stiffness": spring.stiffness,
-                    "free_length": spring.free_length,
-                    "max_length": use.max_length,
-                    "min_length": use.min_length,
-                    "max_force": use.max_force,
-                }
+                spring.to_dict(use.path, use.force)
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
             ],
         }
@@ -181,7 +186,8 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     """
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
-    whole_number("samples", samples, 1, MAX_SAMPLES)
+    held = 2 * (3 * tree.n + 2 * len(mechanism.springs) + 6)  # numbers for each sample
+    whole_number("samples", samples, 1, min(MAX_SAMPLES, MAX_NUMBERS // held))
     whole_number("seed", seed, 0)
     q = sample(tree, samples, seed)
     potential = Potential(mechanism)
@@ -191,7 +197,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
     # every reported extreme climbs on its own: torques, energies both ways, lengths both ways
     def quantities(s: State) -> Array:
         sums = np.stack([s.gravity, s.springs.sum(axis=1), s.energy], axis=1)
-        return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.length, -s.length])
+        return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.path, -s.path])
 
     best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
     n, m = tree.n, len(mechanism.springs)
@@ -218,11 +224,7 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
         use=tuple(
-            SpringUse(
-                float(up),
-                -float(minus),
-                spring.stiffness * max(up - spring.free_length, spring.free_length + minus, 0.0),
-            )
+            SpringUse((-float(minus), float(up)), spring.law.extremes(-float(minus), float(up)))
             for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
         ),
     )
@@ -242,11 +244,11 @@ def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[Four
         return None, str(why)
 
 
-def largest_share(residual: Array, unbalanced: Array, units: Sequence[str]) -> float:
+def largest_share(residual: Array, unbalanced: Array, coordinates: Sequence[Coordinate]) -> float:
     """The largest of (n,) residual torques over the largest unbalanced one of the same unit (inf over 0)."""
-    shares = [0.0]
-    for unit in ("rad", "m"):
-        left, whole = (float(x[np.array(units) == unit].max(initial=0)) for x in (residual, unbalanced))
+    shares, turns = [0.0], np.array([coordinate.turns for coordinate in coordinates], bool)
+    for kind in (turns, ~turns):
+        left, whole = (float(x[kind].max(initial=0)) for x in (residual, unbalanced))
         if left > 0:
             shares.append(left / whole if whole > 0 else np.inf)
     return max(shares)

@@ -10,10 +10,10 @@ from rich.text import Text
 from .errors import InputError
 from .io import load, save
 from .io.files import check_writable
+from .progress import Progress
 from .report.figure import save_figure
 from .report.text import design_lines
 from .synthesis import design
-from .synthesis.problem import Progress
 
 SPAN, RADIUS, SPRINGS = 3, 0.15, 3
 

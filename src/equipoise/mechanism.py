@@ -11,8 +11,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
+from .coordinate import Coordinate, Slide
+from .elements import Element, Vec3
 from .errors import InputError
-from .spring import Spring, Vec3
+from .validate import faults
 
 WORLD = "world"
 JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
@@ -60,6 +62,15 @@ class Joint:
     follows: str | None = None
     damping: float = 0.0
     friction: float = 0.0
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Its own, coupled or not; a spherical joint has three: name.x, name.y and name.z."""
+        if self.type == "spherical":
+            return tuple(Coordinate(f"{self.name}.{letter}") for letter in "xyz")
+        if self.type == "prismatic":
+            return (Slide(self.name),)
+        return (Coordinate(self.name),) if self.type == "revolute" else ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +139,7 @@ class Mechanism:
     joints: tuple[Joint, ...] = ()
     couplings: tuple[Coupling, ...] = ()
     loops: tuple[Loop, ...] = ()
-    springs: tuple[Spring, ...] = ()
+    springs: tuple[Element, ...] = ()
     masses: tuple[PointMass, ...] = ()
     gravity: Vec3 = (0.0, 0.0, -9.81)
     workspace: Workspace = Workspace()
@@ -138,8 +149,6 @@ class Mechanism:
     capsules: tuple[Capsule, ...] = ()
 
     def __post_init__(self) -> None:
-        from .validate import faults
-
         found = faults(self)
         if found:
             raise InputError(found)
@@ -150,27 +159,15 @@ class Mechanism:
         return (WORLD, *(body.name for body in self.bodies))
 
     @property
-    def coordinates(self) -> tuple[str, ...]:
-        """What couplings leave free, in the file's order; a spherical joint has three: name.x, name.y, name.z.
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """What couplings leave free, in the file's order: names that know their units.
 
         Loops make some of these depend on the others: `Tree.of(mechanism).coordinates` are the independent ones.
         """
         dependent = {coupling.joint for coupling in self.couplings}
-        names: list[str] = []
-        for joint in self.joints:
-            if joint.type == "spherical":
-                names += [f"{joint.name}.{letter}" for letter in "xyz"]
-            elif joint.type in SINGLE and joint.name not in dependent:
-                names.append(joint.name)
-        return tuple(names)
+        return tuple(c for joint in self.joints if joint.name not in dependent for c in joint.coordinates)
 
-    @property
-    def coordinate_units(self) -> tuple[str, ...]:
-        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        prismatic = {joint.name for joint in self.joints if joint.type == "prismatic"}
-        return tuple("m" if name in prismatic else "rad" for name in self.coordinates)
-
-    def with_springs(self, springs: Iterable[Spring]) -> Mechanism:
+    def with_springs(self, springs: Iterable[Element]) -> Mechanism:
         """A copy with these springs instead of its own."""
         return replace(self, springs=tuple(springs))
 

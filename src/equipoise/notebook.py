@@ -1,24 +1,38 @@
-"""Values that show themselves in notebooks.
-
-What they show is drawn by `report`, a leaf that the core must not import. So it is found by name, and only when a
-notebook asks.
-"""
+"""Values that show themselves in notebooks, as `report` says, which the core never imports."""
 
 from __future__ import annotations
 
-from importlib import import_module
+from collections.abc import Callable
 from typing import Any
+
+Drawer = Callable[[Any], str]
+
+_DRAWERS: dict[type, dict[str, Drawer]] = {}
+_SUPPLIERS: list[Callable[[], object]] = []
+
+
+def register(kind: type, **drawers: Drawer) -> None:
+    """Say how values of a class are drawn, as `html` or `svg`."""
+    _DRAWERS[kind] = drawers
+
+
+def supplied_by(load: Callable[[], object]) -> None:
+    """Have `load` called, which registers classes, when the first value is to be shown and not before."""
+    _SUPPLIERS.append(load)
 
 
 class Shown:
-    """A value whose class `report.notebook` knows how to draw."""
+    """A value that a notebook draws where its class is registered, and prints where it is not."""
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> str | None:
         return _drawn("html", self)
 
-    def _repr_svg_(self) -> str:
+    def _repr_svg_(self) -> str | None:
         return _drawn("svg", self)
 
 
-def _drawn(how: str, value: Any) -> str:
-    return getattr(import_module("equipoise.report.notebook"), how)(value)
+def _drawn(how: str, value: Any) -> str | None:
+    while _SUPPLIERS:
+        _SUPPLIERS.pop()()
+    draw = _DRAWERS.get(type(value), {}).get(how)
+    return None if draw is None else draw(value)

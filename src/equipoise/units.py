@@ -8,13 +8,17 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
+from numbers import Real
 from typing import Any
+
+from .errors import Fault, InputError
 
 SI_UNITS = {
     "length": "m",
     "angle": "rad",
     "mass": "kg",
     "stiffness": "N/m",
+    "torsional stiffness": "N m/rad",
     "acceleration": "m/s^2",
     "inertia": "kg m^2",
     "torque": "N m",
@@ -27,8 +31,10 @@ SI_UNITS = {
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""
 
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\d\s+-][^+-]*|)\s*")
-_UNIT = re.compile(r"(?:[A-Za-zµ°%]+(?:\^[1-4]|\*\*[1-4])?|[*/ ().·²³])+")
+LONGEST = 200  # characters of a text with a unit; none that means something is half as long
+# possessive, so that no text is gone through twice: a hostile one would take for ever
+_NUMBER = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]{1,3}+)?+")
+_UNIT = re.compile(r"(?:[A-Za-zµ°%]++(?:\^[1-4]|\*\*[1-4])?+|[*/ ().·²³])++")
 
 
 @cache
@@ -49,12 +55,12 @@ def to_si(value: object, dimension: str) -> float:
         The value in the SI unit.
 
     Raises:
-        ValueError: it is not a finite number, or its unit has another dimension; the message says what is expected.
+        InputError: it is not a finite number, or its unit has another dimension; the message says what is expected.
     """
     unit = SI_UNITS[dimension]
     expected = f"expected a number [{unit}] or text with a unit of {dimension}" if unit else "expected a number"
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"{expected}, found {_show(value)}")
+    if isinstance(value, bool) or not isinstance(value, (Real, str)):
+        raise InputError(f"{expected}, found {_show(value)}")
     if isinstance(value, str):
         number = _parse(value, unit, expected)
     else:
@@ -63,24 +69,65 @@ def to_si(value: object, dimension: str) -> float:
         except OverflowError:
             number = math.inf
     if not math.isfinite(number):
-        raise ValueError(f"{expected}, found {_show(value)}, which is not finite")
+        raise InputError(f"{expected}, found {_show(value)}, which is not finite")
+    return number
+
+
+def to_share(value: object) -> float:
+    """A number, or text such as ``"5 %"`` or ``"0.05"``, as a share.
+
+    Raises:
+        ValueError: it is neither.
+    """
+    if isinstance(value, str):
+        return float(value.removesuffix("%")) / (100 if value.endswith("%") else 1)
+    return to_si(value, "number")
+
+
+def quantity(value: object, dimension: str, *field: str | int) -> float:
+    """`to_si` for a field of an input or an argument of a function.
+
+    Raises:
+        InputError: as `to_si`, and names the field.
+    """
+    try:
+        return to_si(value, dimension)
+    except InputError as error:
+        raise InputError(Fault(field, str(error))) from None
+
+
+def share(value: object, *field: str | int, most: float = 1.0) -> float:
+    """A number from 0 to `most`, or text such as ``2%``.
+
+    Raises:
+        InputError: it is not; the message names the field.
+    """
+    try:
+        number = to_share(value)
+    except ValueError:
+        number = math.nan
+    if not 0 <= number <= most:
+        limit = f" from 0 to {most:g}" if math.isfinite(most) else ""
+        raise InputError(Fault(field, f"expected a share{limit} such as 0.02 or 2%, found {_show(value)}"))
     return number
 
 
 def _parse(text: str, unit: str, expected: str) -> float:
-    match = _QUANTITY.fullmatch(text)
-    if match is None or not (match[2] == "" or _UNIT.fullmatch(match[2])):
-        raise ValueError(f"{expected}, found {_show(text)}")
-    number, found = float(match[1]), match[2].strip()
+    text = text.strip()
+    match = _NUMBER.match(text) if len(text) <= LONGEST else None
+    found = text[match.end() :].strip() if match else ""
+    if match is None or not (found == "" or _UNIT.fullmatch(found)):
+        raise InputError(f"{expected}, found {_show(text)}")
+    number = float(match[0])
     if not found:
         return number
     if not unit:
-        raise ValueError(f"{expected} without a unit, found {_show(text)}")
+        raise InputError(f"{expected} without a unit, found {_show(text)}")
     try:
         # parse_units takes names, products and powers only: nothing in a file is evaluated
         return float(_registry().Quantity(number, _registry().parse_units(found.replace("·", "*"))).m_as(_pint(unit)))
     except Exception as error:  # pint has no common base class for unknown and mismatched units
-        raise ValueError(f"{expected} ({unit}), found {_show(text)}") from error
+        raise InputError(f"{expected} ({unit}), found {_show(text)}") from error
 
 
 def _pint(unit: str) -> str:

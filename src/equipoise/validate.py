@@ -2,38 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import islice
 from math import isfinite
 from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
 
-from .errors import Fault, InputError, Path, nearest
+from .coordinate import Coordinate, Slide
+from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, nearest, shorten
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
-MAX_SAMPLES = 10_000_000
-INSTEAD = {
-    "mass": "; where something lifts, as buoyancy does, give the mass less what is lifted",
-    "free_length": "; springs tightened beyond zero length are not known",
-}
-"""What a negative value is meant to say, and how to say it."""
+MAX_SAMPLES = 1_000_000
+MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
+MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
+"""What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
 
 def faults(mechanism: Mechanism) -> list[Fault]:
     """Everything that is wrong with a mechanism, as faults whose paths follow the mechanism file."""
-    return [
-        *_numbers(mechanism),
-        *_names(mechanism),
-        *_references(mechanism),
-        *_joints(mechanism),
-        *_tree(mechanism),
-        *_couplings(mechanism),
-        *_springs(mechanism),
-        *_loops(mechanism),
-        *_branch(mechanism),
-    ]
+    too_many = list(_sizes(mechanism))
+    if too_many:
+        return too_many
+    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch)
+    return list(islice((fault for check in checks for fault in check(mechanism)), COUNTED))
+
+
+def _sizes(m: Mechanism) -> Iterator[Fault]:
+    for kind, most in MOST.items():
+        if (count := len(getattr(m, kind))) > most:
+            yield Fault((kind,), f"at most {most} are worked with, found {count:,}")
 
 
 def whole_number(name: str, value: object, least: int, most: int | None = None) -> None:
@@ -49,33 +50,18 @@ def whole_number(name: str, value: object, least: int, most: int | None = None) 
 
 
 def _numbers(m: Mechanism) -> Iterator[Fault]:
-    def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
-        values = (values,) if isinstance(values, (int, float)) else values
-        if not all(isfinite(value) for value in values):
-            yield Fault(path, "must be finite")
-
     yield from finite(("gravity",), m.gravity)
     for i, body in enumerate(m.bodies):
         yield from finite(("bodies", i, "com"), body.com)
-        yield from _at_least(("bodies", i, "mass"), body.mass, 0, "kg")
+        yield from at_least(("bodies", i, "mass"), body.mass, 0, "kg")
         yield from finite(("bodies", i, "inertia"), body.inertia or ())
     for i, mass in enumerate(m.masses):
         yield from finite(("masses", i, "position"), mass.position)
-        yield from _at_least(("masses", i, "mass"), mass.mass, 0, "kg")
+        yield from at_least(("masses", i, "mass"), mass.mass, 0, "kg")
     for i, capsule in enumerate(m.capsules):
         for end in ("p_a", "p_b"):
             yield from finite(("capsules", i, end), getattr(capsule, end))
-        yield from _at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
-    for i, spring in enumerate(m.springs):
-        for end in ("p_a", "p_b"):
-            yield from finite(("springs", i, end), getattr(spring, end))
-        if not (isfinite(spring.stiffness) and spring.stiffness > 0):
-            yield Fault(("springs", i, "stiffness"), f"must be more than 0 N/m, found {spring.stiffness:g}")
-        yield from _at_least(("springs", i, "free_length"), spring.free_length, 0, "m")
-        yield from _at_least(("springs", i, "mass"), spring.mass, 0, "kg")
-        yield from _at_least(("springs", i, "diameter"), spring.diameter, 0, "m")
-        if not 0 <= spring.mass_split <= 1:
-            yield Fault(("springs", i, "mass_split"), f"must be between 0 and 1, found {spring.mass_split:g}")
+        yield from at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
     for i, joint in enumerate(m.joints):
         for name in ("xyz", "rpy", "axis"):
             yield from finite(("joints", i, name), getattr(joint, name))
@@ -87,11 +73,6 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
         yield Fault(("workspace", "samples"), f"must be between 1 and {MAX_SAMPLES:,}, found {m.workspace.samples}")
 
 
-def _at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
-    if not (isfinite(value) and value >= low):
-        yield Fault(path, f"must be at least {low:g} {unit}, found {value:g}{INSTEAD.get(str(path[-1]), '')}")
-
-
 def _names(m: Mechanism) -> Iterator[Fault]:
     sections = ("bodies", "joints", "springs", "masses", "capsules")
     for kind, items in ((section, getattr(m, section)) for section in sections):
@@ -99,23 +80,23 @@ def _names(m: Mechanism) -> Iterator[Fault]:
         for i, item in enumerate(items):
             if not item.name:
                 yield Fault((kind, i, "name"), "must not be empty")
-            elif not _printable(item.name):
+            elif not printable(item.name):
                 yield Fault((kind, i, "name"), f"has a character that cannot be printed: {item.name!a}")
             elif kind == "bodies" and item.name == "world":
                 yield Fault((kind, i, "name"), "'world' is the fixed frame and cannot be a body")
             elif item.name in seen:
                 yield Fault((kind, i, "name"), f"duplicate name '{item.name}', first used by {kind}[{seen[item.name]}]")
             seen.setdefault(item.name, i)
-    if not _printable(m.name):
+    if not printable(m.name):
         yield Fault(("name",), f"has a character that cannot be printed: {m.name!a}")
     # a spherical joint's coordinates are name.x, name.y, name.z: no other joint may carry such a name
-    spherical = {f"{j.name}.{letter}" for j in m.joints if j.type == "spherical" for letter in "xyz"}
+    spherical = {name for j in m.joints if j.type == "spherical" for name in j.coordinates}
     for i, joint in enumerate(m.joints):
         if joint.name in spherical:
             yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
 
 
-def _printable(name: str) -> bool:
+def printable(name: str) -> bool:
     """Whether a name has no control characters or line breaks: they would reach terminals and break XML."""
     return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
 
@@ -123,21 +104,16 @@ def _printable(name: str) -> bool:
 def _references(m: Mechanism) -> Iterator[Fault]:
     bodies = tuple(dict.fromkeys(("world", *(body.name for body in m.bodies))))
 
-    def body(path: Path, name: str | None) -> Iterator[Fault]:
-        if name is not None and name not in bodies:
-            yield Fault(path, f"there is no body {nearest(name, bodies)}", _shorten(bodies))
-
     for i, joint in enumerate(m.joints):
         for key in ("parent", "child", "follows"):
-            yield from body(("joints", i, key), getattr(joint, key))
-    for kind, items in (("springs", m.springs), ("loops", m.loops)):
-        for i, item in enumerate(items):
-            for key in ("body_a", "body_b"):
-                yield from body((kind, i, key), getattr(item, key))
+            yield from known(("joints", i, key), getattr(joint, key), "body", bodies)
+    for i, loop in enumerate(m.loops):
+        for key in ("body_a", "body_b"):
+            yield from known(("loops", i, key), getattr(loop, key), "body", bodies)
     for i, mass in enumerate(m.masses):
-        yield from body(("masses", i, "body"), mass.body)
+        yield from known(("masses", i, "body"), mass.body, "body", bodies)
     for i, capsule in enumerate(m.capsules):
-        yield from body(("capsules", i, "body"), capsule.body)
+        yield from known(("capsules", i, "body"), capsule.body, "body", bodies)
 
 
 def _joints(m: Mechanism) -> Iterator[Fault]:
@@ -156,10 +132,9 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
         ):
             found = ", ".join(f"{limit:g}" for limit in joint.range)
             yield Fault(("joints", i, "range"), f"must be two finite numbers, lower first, found [{found}]")
-        unit = "N" if joint.type == "prismatic" else "N m"
-        for key, value, per in (("damping", joint.damping, " s/m" if unit == "N" else " s/rad"),
-                                ("friction", joint.friction, "")):  # fmt: skip
-            yield from _at_least(("joints", i, key), value, 0, unit + per)
+        kind = Slide if joint.type == "prismatic" else Coordinate
+        for key, value, per in (("damping", joint.damping, f" s/{kind.unit}"), ("friction", joint.friction, "")):
+            yield from at_least(("joints", i, key), value, 0, kind.load_unit + per)
             if value and joint.type in ("fixed", "parallelogram"):
                 yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
         if joint.type == "parallelogram" and joint.follows is None:
@@ -211,7 +186,7 @@ def _couplings(m: Mechanism) -> Iterator[Fault]:
         for path, name in [(("joint",), coupling.joint), *((("terms", name), name) for name, _ in coupling.terms)]:
             if name not in single:
                 yield Fault(
-                    ("couplings", i, *path), f"no revolute or prismatic joint {nearest(name, single)}", _shorten(single)
+                    ("couplings", i, *path), f"no revolute or prismatic joint {nearest(name, single)}", shorten(single)
                 )
         if coupling.joint in dependent:
             yield Fault(("couplings", i, "joint"), f"joint '{coupling.joint}' is already coupled")
@@ -230,8 +205,8 @@ def _couplings(m: Mechanism) -> Iterator[Fault]:
 
 def _springs(m: Mechanism) -> Iterator[Fault]:
     for i, spring in enumerate(m.springs):
-        if spring.body_a == spring.body_b:
-            yield Fault(("springs", i, "body_b"), f"both ends are on '{spring.body_a}': such a spring does nothing")
+        for fault in spring.faults(m):
+            yield replace(fault, path=("springs", i, *fault.path))
 
 
 def _loops(m: Mechanism) -> Iterator[Fault]:
@@ -259,7 +234,7 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
         for i, name in enumerate(names):
             path: Path = (key, name if key == "assembly" else i)
             if name not in m.coordinates:
-                yield Fault(path, f"there is no coordinate {nearest(name, m.coordinates)}", _shorten(m.coordinates))
+                yield Fault(path, f"there is no coordinate {nearest(name, m.coordinates)}", shorten(m.coordinates))
             elif name in names[:i]:
                 yield Fault(path, f"coordinate '{name}' is named twice")
     for name, value in m.assembly:
@@ -268,8 +243,4 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
 
 
 def _list(names: Iterable[str]) -> str:
-    return ", ".join(_shorten(list(names)))
-
-
-def _shorten(names: Sequence[str], most: int = 12) -> tuple[str, ...]:
-    return tuple(names) if len(names) <= most else (*names[:most], f"... {len(names) - most} more")
+    return ", ".join(shorten(list(names)))

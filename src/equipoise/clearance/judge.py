@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..energy.peak import climb
-from ..energy.potential import Potential
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
-from ..validate import MAX_SAMPLES, whole_number
+from ..validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from .pairs import Pairs
 
 TURNED = 1e-3  # of the largest lever arm: a smaller one has no sign
+NUMBERS = 40  # that are held for each pair and sample
 
 
 @dataclass(frozen=True)
@@ -69,9 +70,10 @@ def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0
         raise InputError(f"mechanism '{mechanism.name}' has no springs")
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
-    whole_number("samples", samples, 1, MAX_SAMPLES)
-    q = sample(tree, samples, seed)
     pairs = Pairs(mechanism)
+    held = NUMBERS * (len(pairs.names) + len(mechanism.springs) + 1)
+    whole_number("samples", samples, 1, max(1, min(MAX_SAMPLES, MAX_NUMBERS // held)))
+    q = sample(tree, samples, seed)
     least, where = climb(tree, lambda x: -pairs.distances(tree.poses(x)), q, seed)
     gaps = [Gap(*name, float(-d), at) for name, d, at in zip(pairs.names, least, where, strict=True)]
     return Clearance(tuple(sorted(gaps, key=lambda gap: gap.distance)), tuple(_lines(mechanism, q)))
@@ -82,15 +84,13 @@ def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
     tree, found = Tree.of(mechanism), []
     poses = tree.poses(q)
     velocities = tree.velocities(q, poses)
-    length = Potential(mechanism)(q).length
-    for i, spring in enumerate(mechanism.springs):
-        A, B = tree.index[spring.body_a], tree.index[spring.body_b]
-        p_a, p_b = np.array(spring.p_a), np.array(spring.p_b)
-        d = poses.point(B, p_b) - poses.point(A, p_a)
-        rate = np.einsum("ni,nij->nj", d, velocities.point(poses, B, p_b) - velocities.point(poses, A, p_a))
-        arm = rate / np.maximum(length[:, i], 1e-12)[:, None]
+    for spring in lines(mechanism, "clearance"):
+        arm = spring.lever_arms(tree, poses, velocities)
         floor = TURNED * np.abs(arm).max(initial=0)
         rarer = np.minimum((arm > floor).mean(axis=0), (arm < -floor).mean(axis=0))
-        over = {name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0}
-        found.append(Line(spring.name, float((length[:, i] < spring.free_length).mean()), over))
+        over: dict[str, float] = {
+            name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0
+        }
+        slack = float((spring.path(tree, poses) < spring.free_length).mean())
+        found.append(Line(spring.name, slack, over))
     return found

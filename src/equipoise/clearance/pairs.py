@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..kinematics import Poses, Tree
 from ..mechanism import Mechanism
 from .segments import closest
@@ -22,7 +23,7 @@ class Pairs:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        tree, springs, capsules = Tree.of(mechanism), mechanism.springs, mechanism.capsules
+        tree, springs, capsules = Tree.of(mechanism), lines(mechanism, "clearance"), mechanism.capsules
         self.bodies = [(tree.index[s.body_a], tree.index[s.body_b]) for s in springs]
         self.bodies += [(tree.index[c.body],) * 2 for c in capsules]
         self.ends = np.array([[one.p_a, one.p_b] for one in (*springs, *capsules)])

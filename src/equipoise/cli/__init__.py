@@ -7,12 +7,13 @@ holds what they share, `options` reads the values that are typed.
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from contextlib import suppress
 from io import TextIOWrapper
+from typing import NoReturn
 
-import typer
-
-from ..errors import EquipoiseError
+from ..errors import EquipoiseError, shortened
 from . import (  # each registers its commands, in this order of the help
     adjust,
     check,
@@ -25,6 +26,7 @@ from . import (  # each registers its commands, in this order of the help
     report,
     reproduce,
     simulate,
+    terminal,
     tolerance,
     view,
 )
@@ -49,28 +51,65 @@ __all__ = [
 ]
 
 
+class _Terminated(BaseException):
+    """The system asks us to end: what is being written is cleared up on the way out."""
+
+
 def main() -> None:
     """The entry point: errors become one message and an exit code, never a traceback."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a letter is no reason to fail
+    before = signal.signal(signal.SIGTERM, _terminate)
     try:
-        app()
+        _run()
     except KeyboardInterrupt:
-        typer.echo("interrupted", err=True)
-        sys.exit(130)
+        _end("interrupted", 128 + signal.SIGINT)
+    except _Terminated:
+        _end("terminated", 128 + signal.SIGTERM)
     except EquipoiseError as error:
-        typer.echo(f"error: {error}", err=True)
-        sys.exit(error.exit_code)
+        _end(f"error: {error}", error.exit_code)
     except BrokenPipeError:  # the reader of our output has closed it, `| head` for example
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
+        _end("", 0)
     except OSError as error:
-        typer.echo(f"error: {(error.strerror or str(error)).lower()}", err=True)
-        sys.exit(2)
+        _end(f"error: {(error.strerror or str(error)).lower()}", 2)
+    except MemoryError:
+        _end("error: there is not enough memory for that", 2)
     except Exception as error:
         if os.environ.get("EQUIPOISE_DEBUG"):
             raise
-        text = f"internal error: {type(error).__name__}: {error}\nPlease report it; EQUIPOISE_DEBUG=1 shows where."
-        typer.echo(text, err=True)
-        sys.exit(2)
+        text = f"internal error: {type(error).__name__}: {shortened(str(error))}"
+        _end(f"{text}\nPlease report it; EQUIPOISE_DEBUG=1 shows where.", 2)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _run() -> None:
+    """Run the command, and say what typer itself would end without a word."""
+    try:
+        app()
+    except SystemExit as stop:
+        if isinstance(stop.__context__, BrokenPipeError):
+            raise stop.__context__ from None
+        if stop.code == 128 + signal.SIGINT:
+            raise KeyboardInterrupt from None
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here a full disk is still an error that can be said
+        raise
+
+
+def _terminate(*_: object) -> None:
+    raise _Terminated
+
+
+def _end(text: str, code: int) -> NoReturn:
+    """Write the last line and go."""
+    with suppress(OSError):  # nobody listens any more
+        if text:
+            terminal.say(text)
+    if sys.stdout is not None:
+        try:
+            sys.stdout.flush()
+        except OSError:  # what it has not taken by now, it will not take
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..units import share
 from . import terminal
 from .app import File, Json, app
 
@@ -36,13 +37,13 @@ def adjust(
     from ..robust import adjust as run
     from . import options
 
-    share = options.share(tolerance, "--tolerance")
+    limit = share(tolerance, "--tolerance")
     mechanism = terminal.load(file)
     carried = options.payload(mechanism, payload, payload_on, payload_at)
     if output:
         check_savable(output)
     with terminal.progress_bar("trying what to move") as report:
-        found = run(mechanism, carried, tolerance=share, seed=seed, progress=report)
+        found = run(mechanism, carried, tolerance=limit, seed=seed, progress=report)
         if output:
             save(found.fixed, output)
     if json:

@@ -35,7 +35,7 @@ def check(
 
     share, torque = options.tolerance(tolerance)
     mechanism = terminal.load(file, weightless=payload is not None)
-    if torque is not None and "m" in Tree.of(mechanism).units:
+    if torque is not None and not Tree.of(mechanism).turns.all():
         raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
     if payload is not None and payload_on is None:
         raise InputError("--payload: needs --payload-on, the body that carries it")

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import InputError
+from ..units import share
 from . import terminal
 from .app import File, Json, app
 
@@ -94,8 +95,7 @@ def design(
     """
     from ..io import check_savable, save
     from ..report.figure import check_drawable, save_figure
-    from ..synthesis import METHODS
-    from ..synthesis import design as run
+    from ..synthesis import METHODS, by_name
     from . import options
 
     given: dict[str, Any] = {
@@ -118,8 +118,11 @@ def design(
     asked = {"regions": "region", "shape": "box"}
     given = {name: value for name, value in given.items() if terminal.typed(context, asked.get(name, name))}
     if method in METHODS:
-        given |= options.settings(set_ or [], METHODS[method].parameters)
-    wound = {"stiffness_factor": stiffness_factor, "preload": options.share(preload, "--preload")}
+        more = options.settings(set_ or [], METHODS[method].parameters)
+        for name in given.keys() & more.keys():
+            raise InputError(f"--{name} and --set {name} both give '{name}': leave out one of them")
+        given |= more
+    wound = {"stiffness_factor": stiffness_factor, "preload": share(preload, "--preload")}
     lengths = options.free_lengths(free_length or [])
     room = None if clearance is None else options.length(clearance, "--clearance")
     thick = None if diameter is None else options.positive_length(diameter, "--diameter")
@@ -134,7 +137,7 @@ def design(
     if mechanism.springs and not keep:
         terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
     with terminal.progress_bar("designing") as report:
-        found = run(mechanism, method, progress=report, **given)
+        found = by_name(mechanism, method, progress=report, **given)
         if thick is not None:
             found = found.with_diameter(thick)
         if lengths is not None or room is not None:

@@ -62,5 +62,5 @@ def assembled(mechanism: Mechanism) -> tuple[Mechanism, dict[str, float] | None]
     tree = Tree.of(mechanism)
     if not isinstance(tree, Linkage):
         return mechanism, None
-    pose = dict(zip(tree.open.coordinates, tree.branch.assembled.tolist(), strict=True))
+    pose: dict[str, float] = dict(zip(tree.open.coordinates, tree.branch.assembled.tolist(), strict=True))
     return replace(mechanism, independent=tree.coordinates), pose

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import Fault, InputError
+from ..units import quantity, share
 from . import terminal
 from .app import File, Json, app
 
@@ -162,7 +163,7 @@ def _options(
     from ..hardware.realise import FRICTION
     from . import options
 
-    rm = None if strength is None else options.quantity(strength, "stress", "--strength")
+    rm = None if strength is None else quantity(strength, "stress", "--strength")
     room = {
         name: options.positive_length(text, f"--{name}")
         for name, text in (("outer", outer), ("length", length))
@@ -173,7 +174,7 @@ def _options(
         kind, value = _named(text, "--friction")
         if kind not in held:
             raise InputError(Fault(("--friction",), f"unknown realisation '{kind}'", tuple(held)))
-        held[kind] = options.share(value, "--friction")
+        held[kind] = share(value, "--friction")
     radius = options.length(pulley, "--pulley")
     if not 0 <= radius < 10:
         raise InputError(Fault(("--pulley",), f"must be from 0 to 10 m, found {pulley}"))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..synthesis.planar.layouts import Search
 
 FORMS = ("text", "latex")
+MANY = 5_000  # layouts: beyond it, the user is told beforehand
 
 
 @app.command()
@@ -40,10 +41,13 @@ def layouts(
     Example: [bold]equipoise layouts 4 --objective span[/bold]
     """
     from ..report.layouts import count_lines, layout_lines
-    from ..synthesis.planar.layouts import search
+    from ..synthesis.planar.layouts import candidates, search
 
     if equations not in ("", *FORMS):
         raise InputError(Fault(("--equations",), f"unknown form {nearest(equations, FORMS)}", FORMS))
+    count = candidates(n, objective, springs, weight)  # pyright: ignore[reportArgumentType]
+    if count > MANY:
+        terminal.say(f"note: up to {count:,} layouts are looked at, which may take minutes")
     with terminal.progress_bar("searching") as report:
         found = search(n, objective, springs, weight, seed, report)  # pyright: ignore[reportArgumentType]
     written = [] if output is None else _write(found, output)

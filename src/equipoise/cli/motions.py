@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,14 +10,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
-from . import options
+from ..units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..kinematics import Tree
     from ..kinematics.motion import Move
 
 FRAMES = 401  # of moves
-_HEAD = re.compile(r"\s*(.*?)\s*(?:\[([^\]]*)\])?\s*")
+MOST = 50_000  # rows of a table
 
 Motion = tuple[Array, Array]
 """(T,) times [s] and (T, n) independent coordinates [rad or m]."""
@@ -62,7 +60,7 @@ def _placed(tree: Tree, moving: Sequence[str], q: Array) -> Array:
 
 
 def _move(text: str, tree: Tree) -> Move:
-    from ..kinematics.motion import Move
+    from ..kinematics.motion import USABLE, Move, unusable
 
     parts = text.rsplit(":", 4)
     if len(parts) != 5:
@@ -70,31 +68,30 @@ def _move(text: str, tree: Tree) -> Move:
     name = parts[0].strip()
     if name not in tree.coordinates:
         raise InputError(Fault(("--move",), f"no coordinate {nearest(name, tree.coordinates)}", tree.coordinates))
-    start, end = (options.quantity(part, "time", "--move") for part in parts[1:3])
+    start, end = (quantity(part, "time", "--move") for part in parts[1:3])
     if end <= start:
         raise InputError(Fault(("--move",), f"must end after it starts, found {start:g} s to {end:g} s"))
-    dimension = "angle" if tree.turns[tree.coordinates.index(name)] else "length"
-    first, last = (options.quantity(part, dimension, "--move") for part in parts[3:])
+    dimension = tree.coordinates[tree.coordinates.index(name)].dimension
+    first, last = (quantity(part, dimension, "--move") for part in parts[3:])
+    if unusable(np.array([start, end]), np.array([first, last])) is not None:
+        raise InputError(Fault(("--move",), f"found '{text}': {USABLE}"))
     return Move(name, start, end, first, last)
 
 
 def _table(path: Path, tree: Tree) -> Motion:
-    from ..io.files import read_text
-    from ..units import to_si
-
-    lines = csv.reader(read_text(path).splitlines(), skipinitialspace=True)
-    rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    from ..io.tables import csv_rows, heading
+    from ..kinematics.motion import USABLE, unusable
 
     def fault(line: int, message: str, choices: tuple[str, ...] = ()) -> InputError:
         return InputError(Fault((), message, choices, file=str(path), line=line))
 
-    (at, head), *body = rows
-    columns = [_HEAD.fullmatch(cell).groups() for cell in head]  # type: ignore[union-attr]  # it matches any text
+    (at, head), *body = csv_rows(path, MOST, ",")
+    columns = [heading(cell) for cell in head]
     names, factors = [name for name, _ in columns], []
     for name, unit in columns:
         if name != "time" and name not in tree.coordinates:
             raise fault(at, f"no coordinate {nearest(name, tree.coordinates)}", ("time", *tree.coordinates))
-        dimension = "time" if name == "time" else (tree.turns[tree.coordinates.index(name)] and "angle") or "length"
+        dimension = "time" if name == "time" else tree.coordinates[tree.coordinates.index(name)].dimension
         try:
             factors.append(to_si(f"1 {unit}", dimension) if unit else 1.0)
         except ValueError as error:
@@ -113,6 +110,9 @@ def _table(path: Path, tree: Tree) -> Motion:
     time = values[:, names.index("time")]
     if len(time) < 3 or (np.diff(time) <= 0).any():
         raise fault(at, "a motion has at least three times, in increasing order")
+    if (odd := unusable(time, values)) is not None:
+        line = body[odd][0]
+        raise fault(line, f"is no motion: {USABLE}")
     q = np.zeros((len(time), tree.n))
     for name, column in zip(names, values.T, strict=True):
         if name != "time":

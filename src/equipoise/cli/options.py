@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .. import slips
 from ..errors import Fault, InputError, nearest
 from ..synthesis import Parameter, Region
-from ..units import to_si
+from ..units import quantity, to_share, to_si
 from . import terminal
 
 if TYPE_CHECKING:
@@ -33,18 +33,6 @@ def positive_length(text: str, option: str) -> float:
     if value <= 0:
         raise InputError(Fault((option,), f"must be more than 0 m, found {text}"))
     return value
-
-
-def quantity(text: str, dimension: str, option: str) -> float:
-    """A number in the SI unit of `dimension`, or one with its unit.
-
-    Raises:
-        InputError: it has another dimension, or is no number; the message names the option.
-    """
-    try:
-        return to_si(text, dimension)
-    except ValueError as error:
-        raise InputError(Fault((option,), str(error))) from None
 
 
 def payload(mechanism: Mechanism, masses: str, body: str, place: str) -> Payload:
@@ -83,14 +71,15 @@ def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:
     """
     from ..kinematics import Tree
 
-    tree, found = Tree.of(mechanism), {}
-    units = dict(zip(tree.coordinates, tree.units, strict=True))
+    coordinates, found = Tree.of(mechanism).coordinates, {}
     for text in texts:
         name, equals, value = text.rpartition("=")
-        if equals and name not in units:
-            raise InputError(Fault(("--friction",), f"there is no coordinate {nearest(name, units)}", tuple(units)))
-        for joint in (name,) if equals else [joint for joint, unit in units.items() if unit == "rad"]:
-            found[joint] = quantity(value, "torque" if units[joint] == "rad" else "force", "--friction")
+        if equals and name not in coordinates:
+            problem = f"there is no coordinate {nearest(name, coordinates)}"
+            raise InputError(Fault(("--friction",), problem, coordinates))
+        for coordinate in coordinates:
+            if coordinate == name if equals else coordinate.turns:
+                found[coordinate] = quantity(value, coordinate.load, "--friction")
     return found
 
 
@@ -103,7 +92,7 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     expected = "expected a share such as 1e-3 or 0.1%, or a torque such as '0.5 N m'"
     share = torque = None
     try:
-        share = _share(text)
+        share = to_share(text)
     except ValueError:
         try:
             torque = to_si(text, "torque")
@@ -113,25 +102,6 @@ def tolerance(text: str) -> tuple[float | None, float | None]:
     if value is None or not 0 < value < inf:
         raise InputError(Fault(("--tolerance",), f"must be more than 0 and finite, found {text}"))
     return share, torque
-
-
-def share(text: str, option: str) -> float:
-    """A share from 0 to 1 such as ``0.02`` or ``2%``.
-
-    Raises:
-        InputError: it is not; the message names the option.
-    """
-    try:
-        value = _share(text)
-    except ValueError:
-        value = inf
-    if not 0 <= value <= 1:
-        raise InputError(Fault((option,), f"expected a share from 0 to 1 such as 0.02 or 2%, found '{text}'"))
-    return value
-
-
-def _share(text: str) -> float:
-    return float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
 
 
 def names(text: str) -> list[str]:
@@ -196,11 +166,10 @@ def settings(texts: list[str], valid: dict[str, Parameter]) -> dict[str, Any]:
         parameter = valid[name]
         if dot and not parameter.each:
             raise InputError(Fault(("--set", name), f"is one value for the whole mechanism, found '{text}'"))
-        read = _values(name, value, parameter)
-        if not parameter.each:
-            found[name] = read
-        else:
-            found.setdefault(name, {})["*" if not dot else body] = read
+        place, key = (found.setdefault(name, {}), body if dot else "*") if parameter.each else (found, name)
+        if key in place:
+            raise InputError(Fault(("--set", name), f"is given twice, the second time by '{text}'"))
+        place[key] = _values(name, value, parameter)
     return found
 
 
@@ -232,7 +201,7 @@ def _value(name: str, text: str, parameter: Parameter) -> Any:
                 raise InputError(Fault(("--set", name), f"expected a whole number, found '{text}'")) from None
         case "share":
             try:
-                return _share(text)
+                return to_share(text)
             except ValueError:
                 problem = f"expected a share such as 0.05 or 5%, found '{text}'"
                 raise InputError(Fault(("--set", name), problem)) from None

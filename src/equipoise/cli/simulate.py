@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import Fault, InputError
+from ..units import quantity
 from . import terminal
 from .app import File, Json, app
 
@@ -74,7 +75,7 @@ def simulate(
     from ..report.simulation import release_lines
     from ..simulate import release
 
-    limit = options.quantity(tolerance, "angle", "--tolerance")
+    limit = quantity(tolerance, "angle", "--tolerance")
     with terminal.progress_bar("simulating") as report:
         found = release(
             mechanism, seconds=seconds, poses=poses, seed=seed, tolerance=limit, radius=size, control=control,

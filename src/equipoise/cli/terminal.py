@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import EquipoiseWarning
+from ..errors import EquipoiseWarning, visible
 from .app import reading
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
-    from ..synthesis.problem import Progress
+    from ..progress import Progress
 
 
 def load(file: Path, *, weightless: bool = False) -> Mechanism:
@@ -100,4 +100,4 @@ def print_json(value: Any) -> None:
 
 
 def say(text: str) -> None:
-    typer.echo(text, err=True)
+    typer.echo(visible(text, "\t\n"), err=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..units import share
 from . import terminal
 from .app import File, Json, app
 
@@ -45,13 +46,13 @@ def tolerance(
 
     shape = "uniform" if uniform else "normal"
     scatter = Scatter(
-        options.share(stiffness, "--stiffness"),
+        share(stiffness, "--stiffness"),
         options.length(attachment, "--attachment"),
-        options.share(mass, "--mass"),
+        share(mass, "--mass"),
         options.length(length, "--length"),
         shape,
     )
-    least = None if required is None else options.share(required, "--yield")
+    least = None if required is None else share(required, "--yield")
     if least is not None and (not friction or not 0 < least <= 1):
         raise InputError("--yield: needs --friction, and a share of more than 0 and at most 100 %")
     mechanism = terminal.load(file)

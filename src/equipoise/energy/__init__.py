@@ -1,7 +1,7 @@
-"""Potential energy: the obvious reference (`potential`) and its exact Fourier form (`fourier`)."""
+"""Potential energy: the slow sum (`reference`), the way chosen (`evaluate`), its exact Fourier form (`fourier`)."""
 
+from ..errors import NoFourierForm
+from .evaluate import Potential
 from .fourier import FourierEnergy
-from .frames import NoFourierForm
-from .potential import Potential
 
 __all__ = ["FourierEnergy", "NoFourierForm", "Potential"]

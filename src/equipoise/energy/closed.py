@@ -86,7 +86,8 @@ def _unit(v: tuple[float, float, float]) -> Array:
 def _opened(mechanism: Mechanism) -> Mechanism:
     """The mechanism without loops, the linear relations between its joints as couplings."""
     linkage = Tree.of(mechanism)
-    assert isinstance(linkage, Linkage)
+    if not isinstance(linkage, Linkage):
+        return mechanism
     bare = replace(mechanism, loops=(), independent=(), assembly=())
     q = linkage.branch.solve(sample(linkage, POSES))[0]
     single = {joint.name for joint in mechanism.joints if joint.type in SINGLE}

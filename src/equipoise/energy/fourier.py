@@ -18,10 +18,9 @@ import numpy as np
 from ..arrays import Array, Booleans, Complexes, Integers
 from ..kinematics.sampling import bounds
 from ..kinematics.tree import Tree
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
-from ..spring import Spring
-from .frames import MAX_TERMS, Frames, NoFourierForm
-from .potential import lumped_masses
+from .frames import MAX_TERMS, Frames
 from .series import Series
 
 EXACT = 1e-10  # relative: what counts as zero
@@ -33,7 +32,7 @@ class FourierEnergy:
 
     Attributes:
         frequency: (T, n) real; zero in the constant term, and so is
-        degree: (T, n) whole numbers, of the sliding coordinates only.
+        degree: (T, n) whole numbers, of coordinates that slide or that a spring on a joint acts on.
         c: (T,) complex [J, or J/m^degree].
         scale: [J] the size of what has to be balanced: what each mass alone, or where gravity does no work each spring
             alone, makes the energy vary by, summed before anything cancels; 0 where that is nothing but rounding.
@@ -48,7 +47,7 @@ class FourierEnergy:
         frames = Frames(tree, max_terms)
         self.tree = tree
         weights = [frames.linear(-np.array(mechanism.gravity), frames.moment([mass])) for mass in _masses(tree)]
-        springs = [spring_series(frames, spring) for spring in mechanism.springs]
+        springs = [spring.series(frames) for spring in mechanism.springs]
         total = Series.sum([Series.constant(np.zeros((1, 1)), tree.n), *weights, *springs])
         n = tree.n
         self.frequency = total.keys[:, :n] / frames.denominators
@@ -58,7 +57,7 @@ class FourierEnergy:
 
     @cached_property
     def reach(self) -> Array:
-        """(n,) the largest value of each coordinate [m or rad] where it slides something; see `bounds`."""
+        """(n,) the largest value of each coordinate [m or rad], where it has a degree; see `bounds`."""
         reach = np.abs(bounds(self.tree)).max(axis=0)
         return np.where(reach > 0, reach, 1.0)  # a slide locked at zero still carries its load
 
@@ -101,7 +100,7 @@ class FourierEnergy:
         return bool(np.isfinite(left + self.scale) and (self.scale == 0 or left <= EXACT * self.scale))
 
     def torque_bound(self) -> Array:
-        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (slides within `reach`)."""
+        """(n,) ``|tau_j| <= sum_k |k_j| |c_k|`` over all configurations [N m or N] (degrees within `reach`)."""
         bound = self.amplitude @ np.abs(self.frequency)
         for j, factor, degree in self._slides():
             bound[j] += np.sum(np.abs(self.c) * factor * np.prod(self.reach**degree, axis=1))
@@ -134,20 +133,6 @@ def gravity_series(frames: Frames) -> Series:
     """Gravity's energy [J] of all masses, spring masses included; coefficients (T, 1, 1)."""
     g = np.array(frames.tree.mechanism.gravity)
     return frames.linear(g, frames.moment(_masses(frames.tree))).scaled(-1)
-
-
-def spring_series(frames: Frames, spring: Spring) -> Series:
-    """The energy [J] of a zero-free-length spring; coefficients (T, 1, 1).
-
-    Raises:
-        NoFourierForm: it has a free length.
-    """
-    if spring.free_length > 0:
-        raise NoFourierForm(f"spring '{spring.name}' has a free length")
-    index, n = frames.tree.index, frames.tree.n
-    z = Series.constant(np.array([*spring.p_a, 1.0, *spring.p_b])[:, None], n)
-    V = frames.stretch(index[spring.body_a], index[spring.body_b])
-    return frames.quadratic({X: v @ z for X, v in V.items()}).scaled(spring.stiffness / 2)
 
 
 def _masses(tree: Tree) -> list[tuple[int, float, Array]]:

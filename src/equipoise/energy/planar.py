@@ -21,11 +21,11 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array, Complexes
+from ..elements import Spring, Vec3, lines
 from ..errors import UnsupportedError
 from ..kinematics import Tree
+from ..masses import lumped_masses
 from ..mechanism import WORLD, Joint, Mechanism
-from ..spring import Spring, Vec3
-from .potential import lumped_masses
 
 PARALLEL = 1e-9  # sine of the angle between axes that count as parallel
 
@@ -164,11 +164,11 @@ class PlanarArm:
         poses = tree.poses(np.zeros((1, tree.n)))
         world_p, world_R = poses.p[0], poses.R[0]
         F = self.R[0] @ world_R[0].T
-        for spring in mechanism.springs:
+        for spring in lines(mechanism, "a stiffness block"):
             if spring.free_length:
                 raise UnsupportedError(f"spring '{spring.name}': a stiffness block needs zero free length")
             ends = []
-            for body, at in ((spring.body_a, spring.p_a), (spring.body_b, spring.p_b)):
+            for body, at in spring.ends:
                 j, index = owner[body], tree.index[body]
                 x, y, _ = F @ (world_p[index] + world_R[index] @ np.array(at) - self.ground) - self.p[j]
                 ends.append((j, complex(x, y) / complex(self.u[j])))

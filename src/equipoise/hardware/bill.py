@@ -6,16 +6,16 @@ masses.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..balance import Balance, SpringUse
+from ..elements import Spring, lines
 from ..errors import Fault, InputError, nearest
 from ..mechanism import Mechanism
-from ..spring import Spring
+from ..progress import Progress, silent
 from .compression import CompressionSpring
 from .extension import ExtensionSpring
 from .leaves import Leaves, leaves
@@ -93,7 +93,7 @@ def bill(
     balance: Balance,
     options: Options | None = None,
     kind: str | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Bill:
     """The bill of a judged design.
 
@@ -108,10 +108,9 @@ def bill(
         raise InputError(Fault(("springs",), f"mechanism '{mechanism.name}' has none; design some first"))
     if kind is not None and kind not in KINDS:
         raise InputError(Fault(("realise",), f"unknown realisation {nearest(kind, KINDS)}", KINDS))
-    items = []
-    for i, (spring, use) in enumerate(zip(mechanism.springs, balance.use, strict=True)):
-        if progress:
-            progress(f"spring {i + 1} of {len(mechanism.springs)}", i / (len(mechanism.springs) + 1))
+    items, springs, report = [], lines(mechanism, "hardware"), progress or silent
+    for i, (spring, use) in enumerate(zip(springs, balance.use, strict=True)):
+        report(f"spring {i + 1} of {len(springs)}", i / (len(springs) + 1))
         ways = sorted(realisations(balance, i, options), key=rank)
         if kind is not None:
             ways.sort(key=lambda way: way.kind != kind)
@@ -120,9 +119,8 @@ def bill(
     made = [way for way in chosen if way is not None]
     if len(made) < len(chosen):
         return Bill(balance, tuple(items), options, None, None)
-    built = mechanism.with_springs(_heavy(spring, way) for spring, way in zip(mechanism.springs, made, strict=True))
-    if progress:
-        progress("judging what is built", 1 - 1 / (len(chosen) + 1))
+    built = mechanism.with_springs(_heavy(spring, way) for spring, way in zip(springs, made, strict=True))
+    report("judging what is built", 1 - 1 / (len(chosen) + 1))
     left = leaves(built, [way.stretch for way in made], [way.friction for way in made])
     return Bill(balance, tuple(items), options, built, left)
 

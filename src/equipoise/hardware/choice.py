@@ -8,7 +8,6 @@ exist. Nothing cheaper than the bound exists, so the first set that is possible 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from time import monotonic
 from typing import Any, Literal
@@ -17,11 +16,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance
+from ..elements import lines
 from ..energy.peak import climb
 from ..errors import Fault, InfeasibleError, InputError, nearest
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from .movable import Movable, Travel
-from .relaxation import Pull, Relaxation
+from .relaxation import OutOfTime, Pull, Relaxation
 from .stock import Catalogue, Stock
 
 Goal = Literal["mass", "price"]
@@ -78,7 +79,7 @@ class Choice:
             "seconds": self.seconds,
             "springs": [
                 {"name": spring.name, "p_a": list(spring.p_a), "p_b": list(spring.p_b), "stock": asdict(stock)}
-                for spring, stock in zip(self.mechanism.springs, self.stock, strict=True)
+                for spring, stock in zip(lines(self.mechanism, "stock"), self.stock, strict=True)
             ],
         }
 
@@ -90,7 +91,7 @@ def choose(
     goal: Goal = "mass",
     travel: Travel | None = None,
     seconds: float = 60.0,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Choice:
     """Choose the best stock spring for every spring of a judged design, and move its attachments.
 
@@ -104,7 +105,7 @@ def choose(
     if goal not in GOALS:
         raise InputError(Fault(("goal",), f"unknown goal {nearest(goal, GOALS)}", GOALS))
     start, movable = monotonic(), Movable(balance.mechanism, travel)
-    say = progress or (lambda what, share: None)
+    say = progress or silent
     say("looking at the stock", 0.0)
     relaxation = _relaxation(movable, catalogue, goal)
     best: Choice | None = None
@@ -113,7 +114,7 @@ def choose(
         left = seconds - (monotonic() - start)
         try:
             found = relaxation.solve(seconds=left) if left > 0 else None
-        except TimeoutError:
+        except OutOfTime:
             left = 0.0
             found = None
         if found is None:

@@ -9,9 +9,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import largest_share
+from ..elements import lines
 from ..energy.peak import climb
-from ..energy.potential import lumped_masses
 from ..kinematics import Tree, sample
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 from .stretch import Stretch
 
@@ -44,7 +45,7 @@ class Torques:
         self._masses = [(self.tree.index[body], m, p) for body, m, p in lumped_masses(mechanism) if m]
         self._springs = [
             (s.stiffness, self.tree.index[s.body_a], np.array(s.p_a), self.tree.index[s.body_b], np.array(s.p_b), law)
-            for s, law in zip(mechanism.springs, laws, strict=True)
+            for s, law in zip(lines(mechanism, "hardware"), laws, strict=True)
         ]
 
     def __call__(self, q: Array) -> tuple[Array, Array]:
@@ -93,4 +94,4 @@ def leaves(
     best, _ = climb(tree, quantities, q, seed)
     unbalanced, residual, band = np.split(best, [n, 2 * n])
     rms = np.sqrt(np.mean(quantities(q)[:, n : 2 * n] ** 2, axis=0))
-    return Leaves(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.units))
+    return Leaves(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.coordinates))

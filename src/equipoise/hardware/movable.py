@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
+from ..elements import Spring, lines
 from ..errors import Fault, InputError, UnsupportedError
 from ..kinematics import Poses, Tree, sample
 from ..mechanism import Mechanism
-from ..spring import Spring
 
 RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
@@ -77,11 +77,12 @@ class Movable:
         travel = travel or Travel()
         if not mechanism.springs:
             raise InputError(Fault(("springs",), f"mechanism '{mechanism.name}' has none"))
-        for spring in mechanism.springs:
+        springs = lines(mechanism, "stock")
+        for spring in springs:
             if spring.free_length:
                 raise UnsupportedError(f"spring '{spring.name}' has a free length; stock rates need zero free length")
         self.mechanism = mechanism
-        self.springs = mechanism.springs
+        self.springs = springs
         self.tree = Tree.of(mechanism)
         zero = self.tree.poses(sample(self.tree, 1))
         self.rays = tuple(

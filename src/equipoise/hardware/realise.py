@@ -23,9 +23,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance
+from ..elements import Spring, lines
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
-from ..spring import Spring
 from .leaves import Torques, leaves
 from .limits import Limits
 from .stretch import Pulley, Straight, Stretch, beyond
@@ -95,7 +95,7 @@ class Realisation:
 
 def realisations(balance: Balance, i: int, options: Options) -> tuple[Realisation, ...]:
     """All ways to make spring `i` of a judged mechanism, those that do not work with the reason."""
-    spring, use = balance.mechanism.springs[i], balance.use[i]
+    spring, use = lines(balance.mechanism, "hardware")[i], balance.use[i]
     shortest, free = use.min_length, spring.free_length
     k = spring.stiffness
     need = Need(k, k * max(shortest - free, 0.0), use.max_force)
@@ -114,7 +114,7 @@ def realisations(balance: Balance, i: int, options: Options) -> tuple[Realisatio
 
 
 def _direct(balance: Balance, i: int, need: Need, options: Options, pushes: str) -> Realisation:
-    spring, shortest = balance.mechanism.springs[i], balance.use[i].min_length
+    spring, shortest = lines(balance.mechanism, "hardware")[i], balance.use[i].min_length
 
     def wind(part: Need) -> Winding:
         return extension(
@@ -134,7 +134,7 @@ def _direct(balance: Balance, i: int, need: Need, options: Options, pushes: str)
 
 
 def _case(balance: Balance, i: int, need: Need, options: Options, pushes: str) -> Realisation:
-    spring = balance.mechanism.springs[i]
+    spring = lines(balance.mechanism, "hardware")[i]
     winding = side_by_side(
         lambda part: extension(part, options.wires, options.limits, options.envelope, free=spring.free_length),
         need, options.most,
@@ -146,7 +146,7 @@ def _case(balance: Balance, i: int, need: Need, options: Options, pushes: str) -
 
 
 def _telescope(balance: Balance, i: int, need: Need, options: Options, pushes: str) -> Realisation:
-    spring, shortest = balance.mechanism.springs[i], balance.use[i].min_length
+    spring, shortest = lines(balance.mechanism, "hardware")[i], balance.use[i].min_length
     winding = side_by_side(
         lambda part: compression(part, options.wires, options.limits, options.envelope), need, options.most
     )
@@ -161,7 +161,7 @@ def _telescope(balance: Balance, i: int, need: Need, options: Options, pushes: s
 def _cable(
     balance: Balance, i: int, need: Need, options: Options, pushes: str, kind: str, radius: float
 ) -> Realisation:
-    mechanism, spring = balance.mechanism, balance.mechanism.springs[i]
+    mechanism, spring = balance.mechanism, lines(balance.mechanism, "hardware")[i]
     d = _seen_from_a(mechanism, spring)
     law = best_pulley(mechanism, i, d, radius)
     stretch, _ = law(d)
@@ -189,7 +189,7 @@ def best_pulley(mechanism: Mechanism, i: int, d: Array, radius: float) -> Pulley
     Args:
         d: (N, 3) vectors from A to B in the frame of A's body, as `check` samples them.
     """
-    spring = mechanism.springs[i]
+    spring = lines(mechanism, "hardware")[i]
     mean = d.mean(axis=0)
     if np.linalg.norm(mean) < 1e-9 * np.linalg.norm(d, axis=1).max():
         mean = d[0]
@@ -199,7 +199,7 @@ def best_pulley(mechanism: Mechanism, i: int, d: Array, radius: float) -> Pulley
         return law
     # the torque is linear in the preload: least squares
     q = sample(Tree.of(mechanism), mechanism.workspace.samples)
-    laws: list[Stretch] = [Straight(s.free_length) for s in mechanism.springs]
+    laws: list[Stretch] = [Straight(s.free_length) for s in lines(mechanism, "hardware")]
     laws[i] = law
     gravity, springs = Torques(mechanism, laws)(q)
     laws[i] = replace(law, preload=law.preload + 1.0)
@@ -232,7 +232,10 @@ def _too_near(shortest: float, options: Options) -> str:
 
 def _judged(mechanism: Mechanism, i: int, made: Realisation) -> Realisation:
     """With what it leaves when spring `i` is made so and the others are ideal."""
-    laws = [made.stretch if j == i else Straight(spring.free_length) for j, spring in enumerate(mechanism.springs)]
+    laws = [
+        made.stretch if j == i else Straight(spring.free_length)
+        for j, spring in enumerate(lines(mechanism, "hardware"))
+    ]
     judged = leaves(mechanism, laws)
     return replace(made, residual=judged.residual, share=judged.share)
 

@@ -23,12 +23,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array, Integers
+from ..errors import EquipoiseError
 from .movable import Movable
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 TERMS = 5  # variables of a cell: whether it is the one, and its k, u, v, w
+
+
+class OutOfTime(EquipoiseError):
+    """Whether there is a solution is not known yet."""
+
+    exit_code = 1
 
 
 @dataclass(frozen=True)
@@ -95,7 +102,7 @@ class Relaxation:
         """The least cost; with the stock `fixed`, a point well inside. None when there is no solution.
 
         Raises:
-            TimeoutError: no solution was found in the time.
+            OutOfTime: no solution was found in the time.
         """
         from scipy.optimize import LinearConstraint, milp
 
@@ -116,7 +123,7 @@ class Relaxation:
         if found.status == 2:
             return None
         if found.x is None:
-            raise TimeoutError
+            raise OutOfTime("no solution was found in the time")
         bound = found.mip_dual_bound if found.mip_dual_bound is not None else found.fun
         return program.read(found.x, float(found.fun), float(bound))
 

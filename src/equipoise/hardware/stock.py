@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from io import StringIO
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from ..errors import Fault, InputError, nearest
-from ..io.files import read_text, write_text
-from ..units import SI_UNITS, to_si
+from ..io.files import write_bytes, write_text
+from ..io.tables import csv_rows, heading, parquet_bytes, parquet_columns
+from ..units import SI_UNITS, quantity
+from ..validate import printable
 
 COLUMNS = {
     "part": ("text", "what it is ordered by; must be unique"),
@@ -74,8 +76,6 @@ def read_catalogue(path: str | Path, columns: Mapping[str, str] | None = None) -
     path = Path(path)
     header, rows = _parquet(path) if path.suffix.lower() == ".parquet" else _csv(path)
     places, faults = _places(header, dict(columns or {}))
-    if len(rows) > MOST:
-        faults.append(Fault((), f"has {len(rows):,} springs, at most {MOST:,} are read"))
     if not rows:
         faults.append(Fault((), "has no springs"))
     found: list[Stock] = []
@@ -83,8 +83,8 @@ def read_catalogue(path: str | Path, columns: Mapping[str, str] | None = None) -
         for number, row in enumerate(rows, start=2):
             try:
                 found.append(_stock(row, places))
-            except ValueError as error:
-                faults.append(Fault((), str(error), line=number))
+            except InputError as error:
+                faults += [replace(fault, line=number) for fault in error.faults]
         seen: set[str] = set()
         for number, one in enumerate(found, start=2):
             if one.part in seen:
@@ -103,8 +103,7 @@ def write_catalogue(catalogue: Iterable[Stock], path: str | Path) -> None:
     path, catalogue = Path(path), tuple(catalogue)
     table = {_header(name): [getattr(one, name) for one in catalogue] for name in COLUMNS}
     if path.suffix.lower() == ".parquet":
-        pyarrow, parquet = _arrow()
-        parquet.write_table(pyarrow.table(table), path)
+        write_bytes(path, parquet_bytes(table))
         return
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -119,46 +118,26 @@ def _header(name: str) -> str:
 
 
 def _csv(path: Path) -> tuple[list[str], list[list[Any]]]:
-    text = read_text(path)
-    first = text.partition("\n")[0]
-    comma = max(",;\t", key=first.count)
-    rows = [row for row in csv.reader(StringIO(text), delimiter=comma) if any(cell.strip() for cell in row)]
-    return ([cell.strip() for cell in rows[0]], list(rows[1:])) if rows else ([], [])
+    (_, header), *rows = csv_rows(path, MOST)
+    return header, [row for _, row in rows]
 
 
 def _parquet(path: Path) -> tuple[list[str], list[list[Any]]]:
-    pyarrow, parquet = _arrow()
-    try:
-        table = parquet.read_table(path)
-    except OSError as error:
-        raise InputError(
-            Fault((), f"cannot be read: {(error.strerror or str(error)).lower()}", file=str(path))
-        ) from None
-    except pyarrow.ArrowException as error:
-        raise InputError(Fault((), f"is no Parquet file: {str(error).splitlines()[0]}", file=str(path))) from None
-    return table.column_names, [list(row) for row in zip(*table.to_pydict().values(), strict=True)]
-
-
-def _arrow() -> tuple[Any, Any]:
-    try:
-        import pyarrow
-        from pyarrow import parquet
-    except ImportError:
-        raise InputError("a Parquet file needs pyarrow: pip install 'equipoise[study]'") from None
-    return pyarrow, parquet
+    columns = parquet_columns(path, MOST)
+    return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
 
 
 Place = tuple[int, float]  # column in the file, and what its numbers are multiplied by
 
 
 def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Place], list[Fault]]:
-    bare = {_split(text)[0]: (i, _split(text)[1]) for i, text in enumerate(header)}
+    bare = {heading(text)[0]: (i, heading(text)[1]) for i, text in enumerate(header)}
     places: dict[str, Place] = {}
     faults = [
         Fault((name,), f"no column {nearest(name, COLUMNS)}", tuple(COLUMNS)) for name in columns.keys() - COLUMNS
     ]
     for name, (dimension, _) in COLUMNS.items():
-        wanted, override = _split(columns.get(name, name))
+        wanted, override = heading(columns.get(name, name))
         if wanted not in bare:
             if name in OPTIONAL and name not in columns:
                 continue
@@ -167,18 +146,12 @@ def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Place
         place, unit = bare[wanted]
         unit = override or unit
         try:
-            factor = to_si(f"1 {unit}", dimension) if unit and dimension != "text" else 1.0
-        except ValueError as error:
-            faults.append(Fault((name,), str(error)))
+            factor = quantity(f"1 {unit}", dimension, name) if unit and dimension != "text" else 1.0
+        except InputError as error:
+            faults += error.faults
             continue
         places[name] = place, factor
     return places, faults
-
-
-def _split(text: str) -> tuple[str, str]:
-    """A header and the unit in brackets after it."""
-    name, bracket, rest = text.strip().rpartition("[")
-    return (name.strip(), rest.removesuffix("]").strip()) if bracket and rest.endswith("]") else (text.strip(), "")
 
 
 def _stock(row: list[Any], places: Mapping[str, Place]) -> Stock:
@@ -190,17 +163,18 @@ def _stock(row: list[Any], places: Mapping[str, Place]) -> Stock:
         else:
             values[name] = _number(name, cell) * factor
     if not values["part"]:
-        raise ValueError("part: is missing")
+        raise InputError(Fault(("part",), "is missing"))
+    if not printable(values["part"]):
+        raise InputError(Fault(("part",), f"has a character that cannot be printed: {values['part']!a}"))
     if values["kind"] not in KINDS:
-        raise ValueError(f"kind: unknown {nearest(values['kind'], KINDS)} (valid: {', '.join(KINDS)})")
+        raise InputError(Fault(("kind",), f"unknown {nearest(values['kind'], KINDS)}", KINDS))
     for name in (f.name for f in fields(Stock) if f.name in values and f.name not in ("part", "kind")):
         least = 0.0 if name in OPTIONAL else 1e-12
         if not values[name] >= least:
-            raise ValueError(
-                f"{name}: must be {'at least' if name in OPTIONAL else 'more than'} 0, found {values[name]:g}"
-            )
+            limit = "at least" if name in OPTIONAL else "more than"
+            raise InputError(Fault((name,), f"must be {limit} 0, found {values[name]:g}"))
     if values.get("initial_tension", 0.0) >= values["max_force"]:
-        raise ValueError("initial_tension: must be less than max_force")
+        raise InputError(Fault(("initial_tension",), "must be less than max_force"))
     return Stock(**values)
 
 
@@ -208,7 +182,7 @@ def _number(name: str, cell: Any) -> float:
     try:
         value = float(cell)
     except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected a number, found '{cell}'") from None
+        raise InputError(Fault((name,), f"expected a number, found '{cell}'")) from None
     if not isfinite(value):
-        raise ValueError(f"{name}: expected a finite number, found '{cell}'")
+        raise InputError(Fault((name,), f"expected a finite number, found '{cell}'"))
     return value

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..spring import Vec3
+from ..elements import Vec3
 
 Stretch = Callable[[Array], tuple[Array, Array]]
 

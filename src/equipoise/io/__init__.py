@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import os
-import re
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import Fault, InputError, SlipWarning
+from . import models
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
 
 YAML_SUFFIXES = (".yaml", ".yml")
-URDF_SUFFIXES = (".urdf", ".xml")
-MJCF_SUFFIXES = (".mjcf", ".xml")
-MODEL_SUFFIXES = tuple(dict.fromkeys((*URDF_SUFFIXES, *MJCF_SUFFIXES)))  # what a mechanism file can build on
-CONVERTED = {
-    ".xacro": "it has macros in it; expand them first: xacro FILE > robot.urdf",
-    ".sdf": "turn it into MJCF first, with sdf2mjcf FILE robot.xml of the package sdformat-mjcf",
-}
-"""What is no mechanism file but becomes one, and how."""
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
@@ -62,19 +54,12 @@ def read(path: str | os.PathLike[str], base: str | None) -> Mechanism:
         from . import yaml
 
         return yaml.read(path, base)
-    if suffix in MODEL_SUFFIXES:
-        root = _root(path) if suffix == ".xml" else ""
-        if suffix == ".mjcf" or root.startswith("mujoco"):
-            from . import mjcf_read
-
-            return mjcf_read.read(path, base)
-        from . import urdf
-
-        return urdf.read(Path(path), base)
+    if suffix in models.MODEL_SUFFIXES:
+        return models.read(path, base)
     found = f"a mechanism file cannot be {_suffix(path)}"
-    if suffix in CONVERTED:
-        raise InputError(Fault((), f"{found}: {CONVERTED[suffix]}", file=os.fspath(path)))
-    raise InputError(Fault((), found, (*YAML_SUFFIXES, *MODEL_SUFFIXES), file=os.fspath(path)))
+    if suffix in models.CONVERTED:
+        raise InputError(Fault((), f"{found}: {models.CONVERTED[suffix]}", file=os.fspath(path)))
+    raise InputError(Fault((), found, (*YAML_SUFFIXES, *models.MODEL_SUFFIXES), file=os.fspath(path)))
 
 
 def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
@@ -102,15 +87,6 @@ def check_savable(path: str | os.PathLike[str]) -> None:
         found = f"a mechanism is saved as YAML, not as {_suffix(path)}"
         raise InputError(Fault((), found, YAML_SUFFIXES, file=os.fspath(path)))
     check_writable(path)
-
-
-def _root(path: str | os.PathLike[str]) -> str:
-    """The tag of the first element of an XML file: comments and declarations may come before it."""
-    from .files import read_text
-
-    text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
-    first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
-    return first[1] if first else ""
 
 
 def _suffix(path: str | os.PathLike[str]) -> str:

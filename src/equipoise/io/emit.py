@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any
 
+from ..elements import Element, Spring
 from ..errors import Fault, InputError, Path
 from ..mechanism import SINGLE, Joint, Mechanism
 from .located import MAX_DEPTH, resolve
@@ -61,7 +62,11 @@ def _item(item: Any) -> dict[str, Any]:
         always = f.name == "axis" and isinstance(item, Joint) and item.type in SINGLE
         if not always and value == f.default:
             continue
-        if f.name == "terms":
+        if f.name == "name" and isinstance(item, Element) and item.kind != Spring.kind:
+            out |= {"name": value, "kind": item.kind}
+        elif f.name == "joints" and [ratio for _, ratio in value] == [1.0]:
+            out["joint"] = value[0][0]
+        elif f.name in ("terms", "joints"):
             out[f.name] = _Line((name, float(ratio)) for name, ratio in value)
         elif isinstance(value, str):
             out[f.name] = value

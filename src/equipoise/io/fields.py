@@ -6,11 +6,10 @@ from functools import partial
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo
-from pydantic_core import PydanticCustomError
 
-from ..errors import nearest
+from ..errors import Fault, InputError, nearest
 from ..mechanism import JOINT_TYPES, MOVING, SINGLE, JointType
-from ..units import SI_UNITS, to_si
+from ..units import SI_UNITS, quantity, to_si
 
 DIMENSION_OF = {"revolute": "angle", "prismatic": "length"}
 """What the coordinate of a joint measures."""
@@ -32,13 +31,13 @@ def _text(value: object) -> str:
     if isinstance(value, str):
         return value
     quotes = f"; put it in quotes: '{show(value)}'" if isinstance(value, (bool, int, float)) else ""
-    raise ValueError(f"expected text, found {show(value)}{quotes}")
+    raise InputError(f"expected text, found {show(value)}{quotes}")
 
 
 def whole(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and float(value).is_integer():
         return int(value)
-    raise ValueError(f"expected a whole number, found {show(value)}")
+    raise InputError(f"expected a whole number, found {show(value)}")
 
 
 def one_of(what: str, choices: tuple[str, ...]) -> Any:
@@ -46,7 +45,7 @@ def one_of(what: str, choices: tuple[str, ...]) -> Any:
         if isinstance(value, str) and value in choices:
             return value
         found = nearest(value, choices) if isinstance(value, str) else show(value)
-        raise PydanticCustomError("choice", "unknown", {"message": f"no {what} {found}", "choices": choices})
+        raise InputError(Fault((), f"no {what} {found}", choices))
 
     return BeforeValidator(check)
 
@@ -61,7 +60,7 @@ def _list_of(count: int, dimension: str) -> Any:
             return value
         found = f"{len(value)}: {show(value)}" if isinstance(value, list) else show(value)
         unit = f" [{SI_UNITS[dimension]}]" if SI_UNITS[dimension] else ""
-        raise ValueError(f"expected a list of {count} numbers{unit}, found {found}")
+        raise InputError(f"expected a list of {count} numbers{unit}, found {found}")
 
     return BeforeValidator(check)
 
@@ -72,6 +71,7 @@ Length = Annotated[float, _number("length")]
 Angle = Annotated[float, _number("angle")]
 Mass = Annotated[float, _number("mass")]
 Stiffness = Annotated[float, _number("stiffness")]
+TorsionalStiffness = Annotated[float, _number("torsional stiffness")]
 Acceleration = Annotated[float, _number("acceleration")]
 Inertia = Annotated[float, _number("inertia")]
 Direction = Annotated[tuple[Number, Number, Number], _list_of(3, "number")]
@@ -88,16 +88,13 @@ def limits(value: object, info: ValidationInfo) -> tuple[float, float] | None:
     if value is None or joint_type is None:  # a bad type has a fault of its own
         return None
     if joint_type not in SINGLE:
-        raise ValueError(f"a {joint_type} joint has no range; only {' and '.join(SINGLE)} have")
+        raise InputError(f"a {joint_type} joint has no range; only {' and '.join(SINGLE)} have")
     dimension = DIMENSION_OF[joint_type]
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f"expected a list of 2 numbers [{SI_UNITS[dimension]}], lower first, found {show(value)}")
+        raise InputError(f"expected a list of 2 numbers [{SI_UNITS[dimension]}], lower first, found {show(value)}")
     found = []
     for i, limit in enumerate(value):
-        try:
-            found.append(to_si(limit, dimension))
-        except ValueError as error:
-            raise PydanticCustomError("element", "bad", {"message": str(error), "index": i}) from error
+        found.append(quantity(limit, dimension, i))
     return found[0], found[1]
 
 
@@ -107,7 +104,7 @@ def held(value: object, info: ValidationInfo) -> float:
     if joint_type is None:
         return 0.0
     if joint_type not in MOVING:
-        raise ValueError(f"a {joint_type} joint has no {info.field_name}; only {', '.join(MOVING)} joints have")
+        raise InputError(f"a {joint_type} joint has no {info.field_name}; only {', '.join(MOVING)} joints have")
     if info.field_name == "friction":
         return to_si(value, "force" if joint_type == "prismatic" else "torque")
     return to_si(value, "damping" if joint_type == "prismatic" else "rotational damping")

@@ -3,28 +3,51 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
+from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 from ..errors import Fault, InputError
 
+try:
+    import fcntl
+except ImportError:  # Windows: nobody can tell whose a temporary file is, and none is cleared
+    fcntl = None
+
 MAX_BYTES = 20_000_000
+OURS = ".equipoise.tmp"  # how the names of our temporary files end
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """What is in a regular file of at most 20 MB; a pipe or a device would make the reader wait for ever.
+
+    Raises:
+        InputError: no such file, no regular file, unreadable or too large.
+    """
+    name = os.fspath(path)
+    try:
+        with open(name, "rb", opener=_unblocked) as stream:
+            if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+                raise _fault(name, "is a pipe or a device, not a file: save what it gives to a file first")
+            data = stream.read(MAX_BYTES + 1)
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise _fault(name, f"cannot be read: {_reason(error)}") from error
+    if len(data) > MAX_BYTES:
+        raise _fault(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
+    return data
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
     """The text of a UTF-8 file of at most 20 MB.
 
     Raises:
-        InputError: no such file, a folder, unreadable, empty, too large, or not UTF-8 (with the line and column).
+        InputError: as `read_bytes`; empty, or not UTF-8 (with the line and column).
     """
-    name = os.fspath(path)
-    try:
-        with open(name, "rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise _fault(name, f"cannot be read: {_reason(error)}") from error
-    if len(data) > MAX_BYTES:
-        raise _fault(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
+    name, data = os.fspath(path), read_bytes(path)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -55,9 +78,9 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
         InputError: the folder is missing or cannot be written to, the path is a folder, or the disk is full.
     """
     name = os.fspath(path)
+    if os.path.isdir(name):
+        raise _fault(name, "cannot be written: it is a folder")
     try:
-        if os.path.isdir(name):
-            raise IsADirectoryError
         if _special(name):
             Path(name).write_bytes(data)
         else:
@@ -96,6 +119,11 @@ def make_folder(path: str | os.PathLike[str]) -> None:
         raise _fault(os.fspath(path), f"cannot be made: {_reason(error)}") from error
 
 
+def _unblocked(name: str, flags: int) -> int:
+    """Open without waiting for the other end of a pipe."""
+    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+
 def _special(name: str) -> bool:
     """Whether it is a pipe or a device, such as /dev/stdout: written to as it is, not replaced."""
     return os.path.exists(name) and not os.path.isfile(name)
@@ -103,17 +131,45 @@ def _special(name: str) -> bool:
 
 def _replace(target: Path, data: bytes) -> None:
     mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
-    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".tmp", dir=target.parent)
+    _clear(target.parent)
+    stream, temporary = _temporary(target)
     try:
-        with open(handle, "wb") as stream:
+        with stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        os.chmod(temporary, mode)
-        os.replace(temporary, target)
+            if fcntl is None:
+                stream.close()  # Windows moves no open file
+            os.chmod(temporary, mode)
+            os.replace(temporary, target)
     except BaseException:  # also when interrupted: nothing is left behind
-        os.unlink(temporary)
+        with suppress(FileNotFoundError):
+            os.unlink(temporary)
         raise
+
+
+def _temporary(target: Path) -> tuple[IO[bytes], str]:
+    """A new file beside the target; who writes it holds its lock, so that others can tell it from a leftover."""
+    while True:
+        handle, name = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=OURS, dir=target.parent)
+        stream = open(handle, "wb")  # noqa: SIM115  # the caller closes it
+        if fcntl is None:
+            return stream, name
+        with suppress(OSError):  # a file system without locks: others cannot lock it either, and leave it alone
+            fcntl.flock(stream, fcntl.LOCK_EX)
+        if os.path.exists(name):  # else another run has just cleared it, before the lock
+            return stream, name
+        stream.close()
+
+
+def _clear(folder: Path) -> None:
+    """Remove the temporary files of ours that a killed run has left: nobody holds their lock."""
+    if fcntl is None:
+        return
+    for path in folder.glob(f".*{OURS}"):
+        with suppress(OSError), open(path, "rb", opener=_unblocked) as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            path.unlink()
 
 
 def _umask() -> int:

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, vec3
+from ..elements import Vec3
 from ..mechanism import WORLD, Body, Joint, JointType, Mechanism
-from ..spring import Vec3
 from .text import Names
 
 X, Y, Z = np.eye(3)
@@ -48,7 +48,9 @@ def held(mechanism: Mechanism, joint: str) -> bool:
         if not more:
             break
         below |= more
-    return any((x.body_a in below) != (x.body_b in below) for x in (*mechanism.loops, *mechanism.springs))
+    ends = [{x.body_a, x.body_b} for x in mechanism.loops]
+    ends += [{body for body, _ in spring.ends} for spring in mechanism.springs]
+    return any(bodies & below and bodies - below for bodies in ends)
 
 
 def free_base(mechanism: Mechanism) -> Mechanism:

@@ -18,6 +18,8 @@ from ruamel.yaml.reader import ReaderError
 from ..errors import Fault, InputError, Path
 
 MAX_DEPTH = 50
+MAX_LENGTH = 1_000_000  # characters; the parser takes about a second for a hundred thousand
+MAX_VALUES = 30_000  # keys and values: more than the largest mechanism needs
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(
     r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
@@ -57,7 +59,6 @@ class Located:
     def at(self, fault: Fault, line: int, column: int) -> Fault:
         """The fault at a line and column of this file, with the line shown."""
         source = self.lines[line - 1] if line <= len(self.lines) else ""
-        source = "".join(c if c.isprintable() or c == "\t" else "\ufffd" for c in source)  # a terminal would obey them
         return fault.at(self.file, line, column, source if len(source) <= 160 else source[:157] + "...")
 
     def error(self, faults: Iterable[Fault] = ()) -> InputError:
@@ -84,8 +85,11 @@ def parse(text: str, file: str) -> Located:
     """Parse YAML text; a key given twice is kept as a fault in the result, and its first value counts.
 
     Raises:
-        InputError: it is not YAML, has no or several documents, uses an alias, an anchor or a tag, or nests too deep.
+        InputError: it is not YAML, has no or several documents, uses an alias, an anchor or a tag, nests too deep, or
+            is too long.
     """
+    if len(text) > MAX_LENGTH:
+        raise InputError(Fault((), f"has {len(text):,} characters, at most {MAX_LENGTH:,} are read", file=file))
     located = Located(file, _BREAK.split(text))
     refused: list[Fault] = []
     builder = _Builder(located, refused)
@@ -128,13 +132,17 @@ class _Builder:
         self.refused = refused
         self.documents = 0
         self.stop = False
+        self._taken = 0
         self.place: Place = (1, 1)  # of the last event
         self._stack: list[_Frame] = []
 
     def take(self, event: Any) -> None:
         kind = type(event).__name__
         self.place = _place(event)
-        if kind == "DocumentStartEvent":
+        self._taken += 1
+        if self._taken > MAX_VALUES:
+            self._refuse(event, f"has more than {MAX_VALUES:,} keys and values, the last of them here", stop=True)
+        elif kind == "DocumentStartEvent":
             self.documents += 1
             if self.documents > 1:
                 self._refuse(event, "a second document starts here; a mechanism file holds one", stop=True)

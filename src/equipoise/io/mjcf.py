@@ -26,10 +26,10 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from ..elements import Vec3
 from ..errors import UnsupportedError
 from ..mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
 from ..rotation import about, from_rpy, to_quaternion
-from ..spring import Vec3
 from .inertials import Inertials
 from .replicas import Replicas, replicas
 from .text import Names, numbers
@@ -80,7 +80,7 @@ def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     waiting = {coupling.joint: coupling for coupling in mechanism.couplings}
     for joint in mechanism.joints:
         if joint.type in TYPES and joint.name not in waiting:
-            names = [f"{joint.name}.{letter}" for letter in "xyz"] if joint.type == "spherical" else [joint.name]
+            names = joint.coordinates
             result[joint.name] = JointValue(TYPES[joint.type], tuple((name, 1.0) for name in names))
     types = {joint.name: joint.type for joint in mechanism.joints}
     while waiting:  # each round settles those that depend on settled ones; there are no rings (see `validate`)
@@ -130,12 +130,11 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
     _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
     equality, tendon = ET.Element("equality"), ET.Element("tendon")
     for spring in mechanism.springs:
-        length = numbers([spring.free_length] * 2)  # one number would leave a slack range from 0 to it
-        element = ET.SubElement(
-            tendon, "spatial", name=spring.name, stiffness=numbers([spring.stiffness]), springlength=length
-        )
-        for end in ("a", "b"):
-            ET.SubElement(element, "site", site=f"{spring.name}.{end}")
+        tag, values, along = spring.mjcf()
+        attributes = {key: numbers(value) for key, value in values.items()}
+        element = ET.SubElement(tendon, tag, name=spring.name, **attributes)
+        for part, runs in along:
+            ET.SubElement(element, part, {key: v if isinstance(v, str) else numbers([v]) for key, v in runs.items()})
     if mechanism.independent:
         ET.SubElement(ET.SubElement(root, "custom"), "text", name=INDEPENDENT, data="\n".join(mechanism.independent))
     _couplings(equality, tendon, mechanism)
@@ -163,8 +162,8 @@ def _sites(m: Mechanism) -> tuple[dict[str, list[tuple[str, Vec3]]], list[tuple[
     """The sites of each body, and the pairs of sites that loops hold together."""
     names, sites, connects = Names(), defaultdict(list), []
     for spring in m.springs:
-        sites[spring.body_a].append((names.new(f"{spring.name}.a"), spring.p_a))
-        sites[spring.body_b].append((names.new(f"{spring.name}.b"), spring.p_b))
+        for letter, (body, p) in zip("ab", spring.ends, strict=False):
+            sites[body].append((names.new(f"{spring.name}.{letter}"), p))
     for i, loop in enumerate(m.loops):
         for p_a, p_b in _loop_points(loop):
             pair = names.new(f"loop{i}.a"), names.new(f"loop{i}.b")
@@ -286,13 +285,9 @@ def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:
     names = Names(m.body_names)
     masses = [replace(mass, name=names.new(mass.name)) for mass in m.masses if mass.mass]
     for spring in m.springs:
-        ends = (
-            ("a", spring.body_a, spring.mass_split, spring.p_a),
-            ("b", spring.body_b, 1 - spring.mass_split, spring.p_b),
-        )
-        for letter, body, share, position in ends:
-            if spring.mass * share:
-                masses.append(PointMass(names.new(f"{spring.name}.{letter}"), body, spring.mass * share, position))
+        for letter, (body, mass, position) in zip("ab", spring.lumps(), strict=False):
+            if mass:
+                masses.append(PointMass(names.new(f"{spring.name}.{letter}"), body, mass, position))
     lumps = defaultdict(list)
     for mass in masses:
         lumps[mass.body].append(mass)

@@ -18,8 +18,9 @@ from .notes import Notes
 
 LEFT_OUT = (
     ("body", "body_gravcomp", "gravity compensation (gravcomp) is left out: the full weight counts"),
-    ("joint", "jnt_stiffness", "a joint's spring (stiffness) is left out: add it to the design as a spring"),
-    ("joint", "jnt_stiffnesspoly", "a joint's curved spring (stiffness with several numbers) is left out"),
+    ("joint", "jnt_stiffness", "the spring (stiffness) of a joint that is no hinge is left out"),
+    ("joint", "jnt_stiffnesspoly", "what is curved in a joint's spring (stiffness with several numbers) is left out"),
+    ("joint", "jnt_springyield", "a joint's spring is read as one that does not yield"),
     ("tendon", "tendon_limited", "limits of a tendon's length are left out"),
     ("tendon", "tendon_frictionloss", "friction of a tendon is left out"),
 )
@@ -73,8 +74,10 @@ class Model:
         springs = not self.off("spring", "passive")
         for kind, array, message in LEFT_OUT:
             values = getattr(model, array, np.zeros(0))  # an older engine has no such thing
+            if array == "jnt_stiffness":
+                values = np.where(model.jnt_type == int(self.mj.mjtJoint.mjJNT_HINGE), 0.0, values)
             for i in np.flatnonzero(values.reshape(len(values), -1).any(axis=1)) if len(values) else ():
-                if springs or "stiffness" not in array:
+                if springs or "spring" not in message:
                     self.note(kind, int(i), message)
         for f in range(model.nflex):
             self.refuse("flex", f, "is an elastic body: only rigid ones are known")

@@ -9,14 +9,14 @@ A weld is three points, as two connects are a hinge.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Array, vec3
+from ..elements import Element, Spring, TorsionSpring, Vec3
 from ..mechanism import Coupling, Loop
 from ..rotation import from_quaternion
-from ..spring import Spring, Vec3
 from .mjcf import HINGE_ARM
 from .mjcf_acts import Model
 from .text import Names
@@ -148,36 +148,51 @@ class Between:
                 self.source.refuse("equality", int(i), "is no connect, weld, joint or tendon: it has no counterpart")
         return tuple(loop for made in found.values() for loop in made)
 
-    def springs(self) -> tuple[Spring, ...]:
+    def springs(self) -> tuple[Element, ...]:
+        """Springs of hinges and of tendons; what is none that is known is refused."""
         source, model = self.source, self.source.model
-        names, springs = Names(), []
-        for t in range(model.ntendon) if not source.off("spring", "passive") else ():
-            bent = (
-                np.any(getattr(model, array, np.zeros((t + 1, 1)))[t])
-                for array in ("tendon_stiffnesspoly", "tendon_springyield")
-            )
-            stiffness = float(model.tendon_stiffness[t])
-            first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
-            wraps = slice(first, first + count)
-            low, high = (float(x) for x in model.tendon_lengthspring[t])
-            if any(bent):
+        names, springs = Names(), list[Element]()
+        if source.off("spring", "passive"):
+            return ()
+        for j, name in self.joint_of.items():
+            if model.jnt_stiffness[j] and int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE):
+                rest = float(model.qpos_spring[model.jnt_qposadr[j]])
+                stiffness = float(model.jnt_stiffness[j])
+                springs.append(TorsionSpring(names.new(f"{name} spring"), ((name, 1.0),), stiffness, rest))
+        for t in range(model.ntendon):
+            if self._bent(t):
                 source.refuse("tendon", t, "is a spring that is curved or yields: only linear ones are known")
-            elif not stiffness:
-                continue
-            elif count != 2 or (model.wrap_type[wraps] != int(source.mj.mjtWrap.mjWRAP_SITE)).any():
-                source.refuse(
-                    "tendon", t, "is a spring that does not run straight between two sites: none such is known"
-                )
-            elif high - low > 1e-12 * max(high, 1.0):
-                problem = f"is slack from {low:g} to {high:g} m: a spring that only pulls is not known"
-                source.refuse(
-                    "tendon", t, f"{problem}; springlength='{high:g} {high:g}' pushes below that length as well"
-                )
-            else:
-                (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in model.wrap_objid[wraps])
-                name = names.new(model.tendon(t).name or f"spring {t}")
-                springs.append(Spring(name, body_a, p_a, body_b, p_b, stiffness, free_length=low))
+            elif model.tendon_stiffness[t] and (found := self._spring(t)):
+                springs.append(replace(found, name=names.new(found.name)))
         return tuple(springs)
+
+    def _bent(self, t: int) -> bool:
+        bends = (getattr(self.source.model, array, None) for array in ("tendon_stiffnesspoly", "tendon_springyield"))
+        return any(values is not None and np.any(values[t]) for values in bends)  # an older engine has no such thing
+
+    def _spring(self, t: int) -> Spring | TorsionSpring | None:
+        """The spring that a tendon is; None where that is refused, or holds nothing."""
+        source, model, wrap = self.source, self.source.model, self.source.mj.mjtWrap
+        name, stiffness = source.name("tendon", t) or f"spring {t}", float(model.tendon_stiffness[t])
+        first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
+        along, kinds = (array[first : first + count] for array in (model.wrap_objid, model.wrap_type))
+        low, high = (float(x) for x in model.tendon_lengthspring[t])
+        if high - low > 1e-12 * max(high, 1.0):
+            problem = f"is slack from {low:g} to {high:g}: a spring that only pulls is not known"
+            source.refuse("tendon", t, f"{problem}; springlength='{high:g} {high:g}' pushes below that length as well")
+        elif (kinds == int(wrap.mjWRAP_JOINT)).all():
+            ratios = zip(along.tolist(), model.wrap_prm[first : first + count].tolist(), strict=True)
+            terms = [(int(j), ratio) for j, ratio in ratios if ratio]
+            if all(int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE) for j, _ in terms):
+                joints = tuple((self.joint_of[j], ratio) for j, ratio in terms)
+                return TorsionSpring(name, joints, stiffness, low) if joints else None
+            source.refuse("tendon", t, "is a spring along slides: only one along hinges is known")
+        elif count != 2 or (kinds != int(wrap.mjWRAP_SITE)).any():
+            source.refuse("tendon", t, "is a spring that does not run straight between two sites: none such is known")
+        else:
+            (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in along)
+            return Spring(name, body_a, p_a, body_b, p_b, stiffness, free_length=low)
+        return None
 
 
 def _connect(made: list[Loop], body_a: str, body_b: str, p_a: Array, p_b: Array) -> None:

@@ -8,6 +8,7 @@ What becomes what, where the two differ:
   length in the reference pose: the compiler says so. A slack range, wrapping and pulleys are refused.
 - A linear equality between joints, or of a fixed tendon held at a length, is a coupling; a joint held alone is locked.
 - A connect is a loop; two connects between the same bodies make a hinge loop. A weld is a hinge loop and a point more.
+- A hinge's stiffness, and a fixed tendon's along hinges, is a torsion spring.
 - A massless leaf of a body with nothing but a mass in one point is a point mass.
 - A capsule or sphere with a name is the space that its body takes.
 - Loops close as in the keyframe "assembled", else as in the reference pose or the first keyframe that closes them;
@@ -32,9 +33,11 @@ from ..arrays import Array, vec3
 from ..errors import Fault, InputError
 from ..mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
 from ..rotation import about, from_quaternion, to_rpy
+from ..validate import MOST
 from . import files, freed
 from .mjcf_acts import Model
 from .mjcf_between import Between, Places
+from .mjcf_compile import compiled
 from .mjcf_pose import assembly, independent, joint_values
 from .notes import Notes
 from .text import Names
@@ -58,23 +61,17 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
         EquipoiseWarning: for each kind of thing that acts and is left out, and each flag that is heeded.
     """
     name = os.fspath(path)
-    text = files.read_text(name)  # a missing, empty or huge file is said as of every other kind
-    try:
-        import mujoco
-    except ImportError:
-        message = "an MJCF file is read through MuJoCo, which comes with: pip install 'equipoise[sim]'"
-        raise InputError(Fault((), message, file=name)) from None
-    try:
-        model = mujoco.MjModel.from_xml_path(name)
-    except ValueError as error:
-        reason = " ".join(str(error).split()).removeprefix("Error: ")
-        raise InputError(Fault((), f"MuJoCo does not compile it: {reason}", file=name)) from None
+    model = compiled(name)
+    import mujoco
+
+    if model.nbody > MOST["bodies"]:
+        raise InputError(Fault((), f"has {model.nbody - 1:,} bodies, at most {MOST['bodies']} are read", file=name))
     notes = Notes(name)
-    reader = _Reader(Model(mujoco, model, notes, lines(text, name)), base)
+    reader = _Reader(Model(mujoco, model, notes, lines(files.read_text(name), name)), base)
     try:
         mechanism = reader.mechanism()
     except InputError as error:
-        raise InputError([*notes.faults, *(replace(fault, file=name) for fault in error.faults)]) from None
+        raise InputError([*notes.faults, *(fault.at(name) for fault in error.faults)]) from None
     notes.close()
     return mechanism
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..elements import Vec3
 from ..errors import UnsupportedError
 from ..mechanism import WORLD, Joint, Mechanism
 from ..rotation import from_rpy
-from ..spring import Vec3
 from .text import Names
 
 

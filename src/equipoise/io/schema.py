@@ -6,11 +6,14 @@ What one item alone can tell is checked here; what needs the whole mechanism is 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
-from ..errors import Fault, Path, nearest
+from ..elements import KINDS, Element, Spring, TorsionSpring
+from ..errors import COUNTED, Fault, InputError, Path, nearest
 from ..mechanism import SINGLE
 from .fields import (
     Angle,
@@ -24,6 +27,7 @@ from .fields import (
     Point,
     Stiffness,
     Text,
+    TorsionalStiffness,
     Type,
     held,
     limits,
@@ -38,14 +42,14 @@ SCHEMA = 1
 def _schema(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value == SCHEMA:
         return SCHEMA
-    raise ValueError(f"this version reads schema {SCHEMA}, found {show(value)}")
+    raise InputError(f"this version reads schema {SCHEMA}, found {show(value)}")
 
 
 class Item(BaseModel):
-    """A mapping of the file. `kind` is what a message calls it."""
+    """A mapping of the file. `noun` is what a message calls it."""
 
     model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
-    kind: ClassVar[str]
+    noun: ClassVar[str]
 
     def values(self) -> dict[str, Any]:
         """The fields by name, as the dataclass of the same kind takes them."""
@@ -53,7 +57,7 @@ class Item(BaseModel):
 
 
 class BodyItem(Item):
-    kind = "a body"
+    noun = "a body"
     name: Text
     mass: Mass = 0.0
     com: Point = (0.0, 0.0, 0.0)
@@ -61,7 +65,7 @@ class BodyItem(Item):
 
 
 class JointItem(Item):
-    kind = "a joint"
+    noun = "a joint"
     name: Text
     type: Type
     parent: Text
@@ -79,7 +83,7 @@ class JointItem(Item):
     def _axis(cls, value: object, info: ValidationInfo) -> object:
         joint_type = info.data.get("type")
         if value is None and joint_type in SINGLE:
-            raise ValueError(f"missing: a {joint_type} joint needs it")
+            raise InputError(f"missing: a {joint_type} joint needs it")
         return (1.0, 0.0, 0.0) if value is None else value
 
     _range = field_validator("range", mode="before")(limits)
@@ -87,14 +91,14 @@ class JointItem(Item):
 
 
 class CouplingItem(Item):
-    kind = "a coupling"
+    noun = "a coupling"
     joint: Text
     terms: dict[str, Number]
     offset: Any = 0.0  # an angle or a length: its joint tells
 
 
 class LoopItem(Item):
-    kind = "a loop"
+    noun = "a loop"
     body_a: Text
     p_a: Point
     body_b: Text
@@ -103,9 +107,31 @@ class LoopItem(Item):
     axis_b: Direction | None = None
 
 
+def _of_kind(value: object) -> object:
+    """An entry of `springs` as the model of its kind; what is wrong inside keeps its own place."""
+    return _spring_model(value).model_validate(value) if isinstance(value, dict) else SpringItem.model_validate(value)
+
+
+def _spring_model(value: object) -> type[Item]:
+    kind = value.get("kind", Spring.kind) if isinstance(value, dict) else Spring.kind
+    return SPRINGS.get(kind, OtherSpring) if isinstance(kind, str) else OtherSpring
+
+
+Kind = Annotated[str, one_of("kind of spring", tuple(KINDS))]
+
+
+class OtherSpring(Item):
+    """Of a kind that does not exist: that is the fault."""
+
+    model_config = ConfigDict(extra="ignore")
+    noun = "a spring"
+    kind: Kind
+
+
 class SpringItem(Item):
-    kind = "a spring"
+    noun = "a spring"
     name: Text
+    kind: Kind = Spring.kind
     body_a: Text
     p_a: Point
     body_b: Text
@@ -116,9 +142,36 @@ class SpringItem(Item):
     mass_split: Number = 0.5
     diameter: Length = 0.0
 
+    def element(self) -> Element:
+        return Spring(**{key: value for key, value in self.values().items() if key != "kind"})
+
+
+class TorsionItem(Item):
+    noun = "a torsion spring"
+    name: Text
+    kind: Kind
+    joint: Text | None = None
+    joints: dict[str, Number] = Field(default={}, validate_default=True)
+    stiffness: TorsionalStiffness
+    rest: Angle = 0.0
+
+    @field_validator("joints")
+    @classmethod
+    def _either(cls, value: dict[str, float], info: ValidationInfo) -> dict[str, float]:
+        if ("joint" in info.data and info.data["joint"] is None) == (not value):
+            raise InputError("give 'joint', or 'joints' with a ratio each, and not both")
+        return value
+
+    def element(self) -> Element:
+        joints = self.joints or {self.joint: 1.0}
+        return TorsionSpring(self.name, tuple(joints.items()), self.stiffness, self.rest)
+
+
+SPRINGS: dict[str, type[Item]] = {Spring.kind: SpringItem, TorsionSpring.kind: TorsionItem}
+
 
 class MassItem(Item):
-    kind = "a mass"
+    noun = "a mass"
     name: Text
     body: Text
     mass: Mass
@@ -126,7 +179,7 @@ class MassItem(Item):
 
 
 class CapsuleItem(Item):
-    kind = "a capsule"
+    noun = "a capsule"
     name: Text
     body: Text
     p_a: Point
@@ -135,12 +188,12 @@ class CapsuleItem(Item):
 
 
 class WorkspaceItem(Item):
-    kind = "a workspace"
+    noun = "a workspace"
     samples: Annotated[int, BeforeValidator(whole)] = 4096
 
 
 class DhRow(Item):
-    kind = "a dh row"
+    noun = "a dh row"
     name: Text | None = None
     type: Annotated[Literal["revolute", "prismatic"], one_of("joint type for a dh row", SINGLE)] = "revolute"
     a: Length
@@ -153,13 +206,13 @@ class DhRow(Item):
 
 
 class DhTable(Item):
-    kind = "a dh table"
+    noun = "a dh table"
     convention: Annotated[Literal["standard", "modified"], one_of("convention", ("standard", "modified"))]
     rows: list[DhRow]
 
 
 class MechanismFile(Item):
-    kind = "a mechanism file"
+    noun = "a mechanism file"
     schema_: Annotated[int, BeforeValidator(_schema), Field(alias="schema")]
     name: Text
     gravity: Gravity = (0.0, 0.0, -9.81)
@@ -171,7 +224,7 @@ class MechanismFile(Item):
     loops: list[LoopItem] = []
     independent: list[Text] = []
     assembly: dict[str, Any] = {}  # angles or lengths: their joints tell
-    springs: list[SpringItem] = []
+    springs: list[Annotated[Any, BeforeValidator(_of_kind)]] = []
     masses: list[MassItem] = []
     capsules: list[CapsuleItem] = []
     workspace: WorkspaceItem = WorkspaceItem()
@@ -200,49 +253,48 @@ def validate(data: object) -> tuple[MechanismFile | None, list[tuple[Fault, bool
     try:
         return MechanismFile.model_validate(data), []
     except ValidationError as error:
-        return None, list(_faults(error))
+        return None, list(islice(_faults(error, data), COUNTED))
 
 
-def _faults(error: ValidationError) -> Iterator[tuple[Fault, bool]]:
+def _faults(error: ValidationError, data: object) -> Iterator[tuple[Fault, bool]]:
     details = error.errors(include_url=False)
     missing = {detail["loc"] for detail in details if detail["type"] == "missing"}
     meant: set[Path] = set()  # missing only because its key is misspelt: one fault, not two
     for detail in details:
         if detail["type"] == "extra_forbidden":
             above, key = detail["loc"][:-1], detail["loc"][-1]
-            keys = _keys(_model(above))
+            keys = _keys(_model(above, data))
             message = f"unknown key {nearest(key, keys)}"
             meant |= {(*above, name) for name in keys if message.endswith(f"mean '{name}'?")} & missing
             yield Fault(detail["loc"], message, keys), True
     for detail in details:
         if detail["type"] != "extra_forbidden" and detail["loc"] not in meant:
-            yield _plain(detail), False
+            yield _plain(detail, data), False
 
 
-def _plain(detail: Any) -> Fault:
+def _plain(detail: Any, data: Any) -> Fault:
     """One pydantic error in plain words."""
     path, kind, context = detail["loc"], detail["type"], detail.get("ctx", {})
     if path == ("schema",) and kind == "missing":
         return Fault(path, f"missing: the file starts with 'schema: {SCHEMA}'")
     if kind == "missing":
-        return Fault(path, f"missing: {_model(path[:-1]).kind} needs it")
+        return Fault(path, f"missing: {_model(path[:-1], data).noun} needs it")
     if kind == "value_error":
-        return Fault(path, str(context["error"]))
-    if kind == "choice":
-        return Fault(path, context["message"], context["choices"])
-    if kind == "element":
-        return Fault((*path, context["index"]), context["message"])
+        (fault,) = context["error"].faults
+        return replace(fault, path=(*path, *fault.path))
     if kind == "list_type":
         return Fault(path, f"expected a list, found {show(detail['input'])}")
     if kind == "dict_type":
         return Fault(path, f"expected a mapping, found {show(detail['input'])}")
-    model = _model(path)
+    model = _model(path, data)
     return Fault(path, f"expected a mapping, found {show(detail['input'])}", _keys(model))
 
 
-def _model(path: Path) -> type[Item]:
+def _model(path: Path, data: Any) -> type[Item]:
     if not path:
         return MechanismFile
+    if path[0] == "springs" and len(path) > 1:
+        return _spring_model(data["springs"][path[1]])
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

@@ -1,7 +1,7 @@
 """URDF: read here, written by `urdf_write`.
 
-Kinematics, loops, inertia, friction and damping are read. What acts on no balance is skipped, what is unknown is named:
-see `urdf_known`. A detail that can be read in one way only is read so, with a warning:
+Kinematics, loops, inertia, joint springs, friction and damping are read. What acts on no balance is skipped, what is
+unknown is named: see `urdf_known`. A detail that can be read in one way only is read so, with a warning:
 
 - A <mimic> on a fixed joint is ignored; a follower's own limits do not restrict its leader, as in ROS.
 - Limits that are missing, or 0 and 0, are what exporters leave where nobody has set any: the joint is unlimited.
@@ -18,16 +18,17 @@ from math import isfinite
 
 import numpy as np
 
+from ..elements import Vec3
 from ..errors import EquipoiseWarning, Fault, InputError, Path, nearest
 from ..mechanism import WORLD, Body, Coupling, Joint, JointType, Mechanism
 from ..rotation import from_rpy
-from ..spring import Vec3
-from . import CONVERTED, files, freed
+from . import files, freed
 from .lint import inertia_lint
 from .notes import Notes
 from .urdf_joints import chained, unrestricted
-from .urdf_known import label, refuse_xacro, short, unread
+from .urdf_known import CONVERTED, label, refuse_xacro, short, unread
 from .urdf_loops import loops
+from .urdf_springs import springs
 from .urdf_write import MOMENTS, to_text, weld
 from .xmltree import Document, Element
 
@@ -111,6 +112,7 @@ class _Reader:
         joints = [(self._joint(joint), joint) for joint in root.find_all("joint")]
         couplings = self._couplings([joint for joint, _ in joints], root)
         closed = loops(root, self.notes)
+        elastic = springs(root, [joint for joint, _ in joints], self.notes)
         if not links:
             self._fault(root, ("robot",), "has no link")
         if self.broken or not links:
@@ -125,10 +127,15 @@ class _Reader:
                 joints=tuple(joint for joint, _ in joints),
                 couplings=tuple(coupling for coupling, _ in couplings),
                 loops=tuple(loop for loop, _ in closed),
+                springs=elastic,
             )
         except InputError as error:
-            places = {"bodies": links, "joints": joints, "couplings": couplings, "loops": closed}
+            places = {"bodies": links, "joints": joints, "couplings": couplings, "loops": closed,
+                      "springs": [(spring, root) for spring in elastic]}  # fmt: skip
             for fault in error.faults:
+                if len(fault.path) < 2:  # of the whole mechanism
+                    self._fault(root, fault.path, fault.message)
+                    continue
                 kind, i, *rest = fault.path
                 element = places[str(kind)][int(i)][1]
                 path = (label(element), *(_FIELDS.get(str(key), key) for key in rest))

@@ -6,6 +6,12 @@ from ..errors import Fault, InputError
 from .notes import Notes
 from .xmltree import Document, Element
 
+CONVERTED = {
+    ".xacro": "it has macros in it; expand them first: xacro FILE > robot.urdf",
+    ".sdf": "turn it into MJCF first, with sdf2mjcf FILE robot.xml of the package sdformat-mjcf",
+}
+"""What is no mechanism file but becomes one, and how."""
+
 KNOWN = {
     "robot": {"link", "joint", "loop_joint", "gazebo", "material", "transmission", "ros2_control", "sensor"},
     "link": {"inertial", "visual", "collision", "contact", "self_filter", "collision_checking"},
@@ -22,14 +28,12 @@ ATTRIBUTES = {"dynamics": {"damping", "friction"}, "mimic": {"joint", "multiplie
 
 OFF = "gravity that is switched off is left out: the full weight counts"
 GAZEBO = {
-    "springStiffness": ("0", "a simulator's spring on a joint is left out: add it to the design as a spring"),
-    "spring_stiffness": ("0", "a simulator's spring on a joint is left out: add it to the design as a spring"),
     "turnGravityOff": ("false", OFF),
     "gravity": ("true", OFF),
     "joint": ("never", "a simulator's joint is left out: write it as <loop_joint>, or as a loop of a mechanism file"),
 }
 """What acts among a simulator's settings: the value with which it does not, and what is said of any other."""
-SAME = {"1": "true", "0.0": "0"}
+SAME = {"1": "true", "0": "false"}
 
 
 def unread(document: Document, notes: Notes) -> None:
@@ -51,10 +55,15 @@ def unread(document: Document, notes: Notes) -> None:
 def _settings(gazebo: Element, notes: Notes) -> None:
     for element in gazebo.children:
         idle, message = GAZEBO.get(element.tag, ("", ""))
-        text = "".join(element.texts).strip().lower() or element.attributes.get("value", "")
+        text = words(element).lower()
         if message and SAME.get(text, text) != idle:
             name = gazebo.attributes.get("reference") or element.attributes.get("name", "")
             notes.note(f"<{element.tag}> of '{name}'", message, element.line)
+
+
+def words(element: Element) -> str:
+    """What stands in an element, or is its value."""
+    return "".join(element.texts).strip() or element.attributes.get("value", "")
 
 
 def refuse_xacro(document: Document) -> None:

@@ -9,6 +9,8 @@ from xml.parsers import expat
 
 from ..errors import Fault, InputError
 
+MAX_ELEMENTS = 50_000  # the largest robot files have a few thousand
+
 
 @dataclass(frozen=True)
 class Element:
@@ -46,7 +48,8 @@ class Document:
         file: its name, for errors.
 
     Raises:
-        InputError: the text is not well-formed XML, or has a document type declaration, which could define entities.
+        InputError: the text is not well-formed XML, has too many elements, or has a document type
+            declaration, which could define entities.
     """
 
     def __init__(self, text: str, file: str) -> None:
@@ -66,8 +69,17 @@ class Document:
         parser = expat.ParserCreate()
         parser.buffer_text = True
         open_elements = [Element("", {}, 0, 0)]
+        count = 0
+
+        def refuse(message: str) -> None:
+            place = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
+            raise InputError(self._at(Fault((), message), *place))
 
         def start(tag: str, attributes: dict[str, str]) -> None:
+            nonlocal count
+            count += 1
+            if count > MAX_ELEMENTS:
+                refuse(f"has more than {MAX_ELEMENTS:,} elements")
             element = Element(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
             open_elements[-1].children.append(element)
             open_elements.append(element)
@@ -80,8 +92,7 @@ class Document:
 
         def doctype(*_: object) -> None:
             # expat reports the declaration before it reads any entity inside it
-            fault = Fault((), "a document type declaration (<!DOCTYPE ...>) is not accepted: remove it")
-            raise InputError(self._at(fault, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1))
+            refuse("a document type declaration (<!DOCTYPE ...>) is not accepted: remove it")
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end

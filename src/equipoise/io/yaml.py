@@ -8,12 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 
+from ..elements import Vec3
 from ..errors import Fault, InputError, Path, nearest
 from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from ..spring import Spring, Vec3
-from ..units import to_si
-from . import MODEL_SUFFIXES, dh
-from . import read as read_model
+from ..units import quantity
+from . import dh, models
 from .emit import to_text
 from .fields import DIMENSION_OF
 from .files import read_text
@@ -72,7 +71,7 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             joints=tuple(joint for joint, _ in tree.joints),
             couplings=tuple(coupling for coupling, _ in tree.couplings),
             loops=tuple(Loop(**item.values()) for item in file.loops),
-            springs=tuple(Spring(**item.values()) for item in file.springs),
+            springs=tuple(item.element() for item in file.springs),
             masses=tuple(PointMass(**item.values()) for item in file.masses),
             capsules=tuple(Capsule(**item.values()) for item in file.capsules),
             gravity=tree.gravity or file.gravity,
@@ -118,9 +117,9 @@ def _tree(file: MechanismFile, located: Located, base: str | None) -> tuple[_Tre
         offset = 0.0
         if item.joint in types and types[item.joint] in DIMENSION_OF:  # if not, that is the fault
             try:
-                offset = to_si(item.offset, DIMENSION_OF[types[item.joint]])
-            except ValueError as error:
-                faults.append(Fault(("couplings", i, "offset"), str(error)))
+                offset = quantity(item.offset, DIMENSION_OF[types[item.joint]], "couplings", i, "offset")
+            except InputError as error:
+                faults += error.faults
         tree.couplings.append((Coupling(item.joint, tuple(item.terms.items()), offset), _Origin(("couplings", i))))
     return tree, faults
 
@@ -132,11 +131,11 @@ def _assembly(file: MechanismFile, tree: _Tree) -> tuple[dict[str, float], list[
     faults: list[Fault] = []
     for name, value in file.assembly.items():
         try:
-            values[name] = to_si(value, DIMENSION_OF.get(types.get(name, ""), "angle"))
-        except ValueError as error:
+            values[name] = quantity(value, DIMENSION_OF.get(types.get(name, ""), "angle"), "assembly", name)
+        except InputError as error:
             values[name] = 0.0
             if name in types or "." in name:  # if not, that is the fault
-                faults.append(Fault(("assembly", name), str(error)))
+                faults += error.faults
     return values, faults
 
 
@@ -144,14 +143,14 @@ def _model(name: str, located: Located, base: str | None) -> Mechanism:
     """The mechanism of a model file; its name is relative to the folder of the mechanism file."""
     path = FilePath(located.file).parent / name
     suffix = path.suffix.lower()
-    if suffix not in MODEL_SUFFIXES:
+    if suffix not in models.MODEL_SUFFIXES:
         message = f"'{name}' cannot be read: a model is a URDF or an MJCF file"
-        raise located.error([Fault(("model",), message, MODEL_SUFFIXES)])
+        raise located.error([Fault(("model",), message, models.MODEL_SUFFIXES)])
     if not path.is_file():
-        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in MODEL_SUFFIXES)
+        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in models.MODEL_SUFFIXES)
         raise located.error([Fault(("model",), f"there is no file {nearest(name, beside)}", tuple(beside[:12]))])
     try:
-        model = read_model(path, base)
+        model = models.read(path, base)
     except InputError as error:
         raise located.error([Fault(("model",), f"'{name}' cannot be used as a model"), *error.faults]) from error
     for key in ("loops", "springs", "masses"):

@@ -68,11 +68,10 @@ def _not_assembled(closure: Closure, best: Array, outside: Array | None) -> Faul
     if outside is not None:
         s = tree.values(outside[None])[0]
         wrong = int(np.argmax(np.maximum(tree.lower - s, s - tree.upper)))
-        unit, factor = ("deg", 180 / np.pi) if tree.rotates[wrong] else ("mm", 1e3)
-        found, low, high = (f"{factor * x:.4g}" for x in (s[wrong], tree.lower[wrong], tree.upper[wrong]))
-        message = (
-            f"they close only with joint '{tree.motions[wrong]}' at {found} {unit}, outside its range of {low} to "
-        )
+        joint = tree.motions[wrong]
+        found, low, high = (f"{joint.scale * x:.4g}" for x in (s[wrong], tree.lower[wrong], tree.upper[wrong]))
+        unit = joint.shown_unit
+        message = f"they close only with joint '{joint}' at {found} {unit}, outside its range of {low} to "
         return Fault(("loops",), f"{message}{high} {unit}; give 'assembly' values near a closed pose, or widen it")
     gaps = closure.gaps(best[None])[0]
     i = int(gaps.argmax())

@@ -116,7 +116,7 @@ def _newton_chunk(closure: Closure, split: Split, q: Array) -> tuple[Array, Arra
             going = (size >= CLOSED) & (size < (STALLED if i > 1 else 2.0) * before[todo])
             before[todo] = size
             todo, residual = todo[going], residual[going]
-            poses = type(poses)(poses.R[going], poses.p[going])
+            poses = type(poses)(poses.R[going], poses.p[going], poses.s[going])
         if not len(todo):
             break
         whole = closure.jacobian(q[todo], poses)

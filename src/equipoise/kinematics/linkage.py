@@ -71,14 +71,14 @@ class Linkage(Tree):
         poses = self.open.poses(full)
         bad = np.isnan(full).any(axis=1)
         poses.R[bad], poses.p[bad] = np.nan, np.nan  # of the bodies before the loops too
-        return ClosedPoses(poses.R, poses.p, full)
+        return ClosedPoses(poses.R, poses.p, poses.s, full)
 
     def velocities(self, q: Array, poses: Poses) -> Velocities:
         """Analytic body velocities per unit rate of each independent coordinate, at `q` (N, n) with its `poses`."""
         full = poses.q if isinstance(poses, ClosedPoses) else self.branch.solve(q)[0]
         velocities = self.open.velocities(full, poses)
         rates = self._rates(full, poses)[:, None]
-        return Velocities(velocities.w @ rates, velocities.v @ rates)
+        return Velocities(velocities.w @ rates, velocities.v @ rates, velocities.s @ rates[:, 0])
 
     def _rates(self, full: Array, poses: Poses) -> Array:
         """dq/du (N, open.n, n)."""

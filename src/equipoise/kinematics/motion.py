@@ -8,6 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..errors import Fault, InputError, nearest
+
+LARGEST, SHORTEST = 1e9, 1e-9  # [s, rad or m] of times and values, [s] between two times: beyond them rates overflow
+USABLE = f"times and values are below {LARGEST:.0e} in size, and times are at least {SHORTEST:.0e} s apart"
+
+
+def unusable(time: Array, values: Array) -> int | None:
+    """The first row of times (T,) [s] and values (T, ...) [rad or m] that has no usable rate; None if all have."""
+    sizes = np.abs(values).reshape(len(time), -1).max(axis=1, initial=0.0)
+    far = (np.abs(time) > LARGEST) | (sizes > LARGEST) | (np.diff(time, prepend=-np.inf) < SHORTEST)
+    return int(np.argmax(far)) if far.any() else None
 
 
 @dataclass(frozen=True)
@@ -32,11 +43,14 @@ def follow(coordinates: Sequence[str], moves: Iterable[Move], t: Array) -> Array
     A coordinate that no move names stays at 0.
 
     Raises:
-        ValueError: a move names no coordinate.
+        InputError: a move names no coordinate.
     """
     q, begun = np.zeros((len(t), len(coordinates))), set()
     for move in moves:
-        j = list(coordinates).index(move.coordinate)
+        if move.coordinate not in coordinates:
+            problem = f"there is no coordinate {nearest(move.coordinate, coordinates)}"
+            raise InputError(Fault(("moves",), problem, tuple(coordinates)))
+        j = coordinates.index(move.coordinate)
         late = t >= move.start if j in begun else np.ones(len(t), dtype=bool)
         q[late, j] = move.at(t[late])
         begun.add(j)

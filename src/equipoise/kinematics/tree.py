@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arrays import Array, Booleans, Integers
+from ..errors import InputError
 from ..mechanism import SINGLE, Joint, Mechanism
 from ..rotation import about, from_rpy, harmonics
 
@@ -50,10 +52,14 @@ class Link:
 
 @dataclass(frozen=True)
 class Poses:
-    """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it."""
+    """Orientation `R` (N, bodies, 3, 3) and origin `p` (N, bodies, 3) [m] of each body in the world; body 0 is it.
+
+    And the elementary joint values `s` (N, motions) [rad or m] that they come from.
+    """
 
     R: Array
     p: Array
+    s: Array
 
     def point(self, body: int, p: Array) -> Array:
         """World position (N, 3) of the point `p` (3,) fixed in `body`."""
@@ -62,10 +68,14 @@ class Poses:
 
 @dataclass(frozen=True)
 class Velocities:
-    """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate."""
+    """Angular `w` and origin `v` velocities (N, bodies, 3, n) in the world, for unit rate of each coordinate.
+
+    And the rates `s` (N, motions, n) of the elementary joint values.
+    """
 
     w: Array
     v: Array
+    s: Array
 
     def point(self, poses: Poses, body: int, p: Array) -> Array:
         """Velocity (N, 3, n) of the point `p` (3,) fixed in `body`."""
@@ -78,8 +88,8 @@ class Tree:
 
     Attributes:
         names: body names, the world first; `index` maps a name to its number.
-        motions: names of the elementary motions.
-        coordinates: names of the coordinates q.
+        motions: what each elementary motion is measured by; `rows` maps a name to its row.
+        coordinates: those of q.
         links: one per body but the world, parents before children.
         C: (motions, n) elementary joint values are ``s = C q + s0``.
         s0: (motions,) [rad or m].
@@ -94,15 +104,14 @@ class Tree:
         self.index = {name: i for i, name in enumerate(self.names)}
         self.coordinates = mechanism.coordinates
         self.n = len(self.coordinates)
-        self.motions = tuple(_motion_names(mechanism))
-        rows = {name: row for row, name in enumerate(self.motions)}
-        self.links = tuple(self._links(rows))
-        self.C, self.s0 = _couplings(mechanism, rows)
+        self.motions = tuple(c for joint in mechanism.joints for c in joint.coordinates)
+        self.rows: dict[str, int] = {name: row for row, name in enumerate(self.motions)}
+        self.links = tuple(self._links(self.rows))
+        self.C, self.s0 = _couplings(mechanism, self.rows)
         ranges = {j.name: j.range for j in mechanism.joints if j.range is not None}
-        self.lower = np.array([ranges.get(name, (-np.inf, np.inf))[0] for name in rows])
-        self.upper = np.array([ranges.get(name, (-np.inf, np.inf))[1] for name in rows])
-        prismatic = {joint.name for joint in mechanism.joints if joint.type == "prismatic"}
-        self.rotates = np.array([name not in prismatic for name in rows], dtype=bool)
+        self.lower = np.array([ranges.get(name, (-np.inf, np.inf))[0] for name in self.motions])
+        self.upper = np.array([ranges.get(name, (-np.inf, np.inf))[1] for name in self.motions])
+        self.rotates = np.array([motion.turns for motion in self.motions], dtype=bool)
 
     @staticmethod
     @lru_cache(maxsize=32)
@@ -140,8 +149,7 @@ class Tree:
     @cached_property
     def coordinate_rows(self) -> Integers:
         """(n,) the motion row that is coordinate j itself."""
-        rows = {name: row for row, name in enumerate(self.motions)}
-        return np.array([rows[name] for name in self.coordinates], dtype=int)
+        return np.array([self.rows[name] for name in self.coordinates], dtype=int)
 
     @property
     def turns(self) -> Booleans:
@@ -149,14 +157,20 @@ class Tree:
         return self.rotates[self.coordinate_rows]
 
     @property
-    def units(self) -> tuple[str, ...]:
-        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return tuple("rad" if turns else "m" for turns in self.turns)
-
-    @property
     def rest(self) -> Array:
         """(n,) a configuration in which it can be: all zero, or as its loops are assembled."""
         return np.zeros(self.n)
+
+    def batch(self, q: ArrayLike) -> Array:
+        """Configurations as (N, n), from (N, n) or (n,) for one.
+
+        Raises:
+            InputError: another shape.
+        """
+        q = np.atleast_2d(np.asarray(q, float))
+        if q.shape[1:] != (self.n,):
+            raise InputError(f"q has shape {q.shape}, expected (N, {self.n}) for {self.coordinates}")
+        return q
 
     def values(self, q: Array) -> Array:
         """(N, motions) every elementary joint value [rad or m] at `q` (N, n), dependent ones included."""
@@ -184,7 +198,7 @@ class Tree:
                 shift = shift + s[:, link.slide.row, None] * (link.R0 @ link.slide.axis)
             R[:, link.body] = R[:, link.base] @ turn
             p[:, link.body] = p[:, link.parent] + (R[:, link.parent] @ shift[..., None])[..., 0]
-        return Poses(R, p)
+        return Poses(R, p, s)
 
     @cached_property
     def _turning(self) -> tuple[Array, Array, Array]:
@@ -228,22 +242,12 @@ class Tree:
             v[:, B] = v[:, P] + np.cross(w[:, P], (poses.p[:, B] - poses.p[:, P])[:, :, None], axis=1)
             for motion in link.motions:
                 (w if motion.rotates else v)[:, B] += axes[:, motion.row, :, None] * self.C[motion.row]
-        return Velocities(w, v)
-
-
-def _motion_names(mechanism: Mechanism) -> list[str]:
-    names: list[str] = []
-    for joint in mechanism.joints:
-        if joint.type == "spherical":
-            names += [f"{joint.name}.{letter}" for letter in "xyz"]
-        elif joint.type in SINGLE:
-            names.append(joint.name)
-    return names
+        return Velocities(w, v, np.broadcast_to(self.C, (len(q), *self.C.shape)))
 
 
 def _motions(joint: Joint, rows: dict[str, int]) -> tuple[Motion, ...]:
     if joint.type == "spherical":
-        return tuple(Motion(np.eye(3)[i], rows[f"{joint.name}.{letter}"], True) for i, letter in enumerate("xyz"))
+        return tuple(Motion(axis, rows[name], True) for axis, name in zip(np.eye(3), joint.coordinates, strict=True))
     if joint.type in SINGLE:
         axis = np.array(joint.axis, float)
         axis /= np.abs(axis).max()  # first, so that a very long or short axis does not overflow

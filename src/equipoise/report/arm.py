@@ -50,8 +50,8 @@ def draw(axes: Any, skeleton: Skeleton, poses: Poses, shown: int, view: View) ->
         pen.joint(point)
     for point in skeleton.masses:
         pen.mass(point)
-    for i, (a, b) in enumerate(skeleton.springs):
-        pen.spring(a, b, style.spring_colour(i))
+    for i, line in enumerate(skeleton.springs):
+        pen.spring(line, style.spring_colour(i))
     pen.scale()
 
 
@@ -106,13 +106,13 @@ class _Pen:
         look = {"marker": "s", "markersize": self.thick * 1.25, "markerfacecolor": style.INK}
         self.line(self.view.flat(p[None]), style.INK, 0, self.order(p, 1.2), markeredgecolor="white", **look)
 
-    def spring(self, a: Point, b: Point, colour: str) -> None:
-        p, q = self.at(a), self.at(b)
-        order, flat = self.order((p + q) / 2, 2.0), self.view.flat(np.array([p, q]))
-        path = zigzag(flat[0], flat[1], 0.018 * self.size, 0.017 * self.size)
+    def spring(self, line: tuple[Point, ...], colour: str) -> None:
+        places = np.array([self.at(point) for point in line])
+        order, flat = self.order(places.mean(axis=0), 2.0), self.view.flat(places)
+        path = coiled(flat, 0.018 * self.size, 0.017 * self.size)
         self.line(path, "white", 4.0, order, alpha=0.85)
         self.line(path, colour, 2.0, order + 0.001)
-        for point, end in zip((p, q), flat, strict=True):
+        for point, end in zip(places[[0, -1]], flat[[0, -1]], strict=True):
             look = {"marker": "o", "markersize": 6.0, "markerfacecolor": colour, "markeredgecolor": "white"}
             top = max(order, self.order(point, 2.0)) + 0.002  # over its own line, and over the body it is on
             self.line(end[None], colour, 0, top, markeredgewidth=0.9, **look)
@@ -166,6 +166,11 @@ class _Pen:
         self.line(bar, style.FAINT, 1.4, 40, solid_capstyle="butt")
         text = f"{length:g} m" if length >= 0.1 else f"{1000 * length:g} mm"
         self.axes.text(x + length / 2, y + 1.6 * tick, text, color=style.FAINT, ha="center", va="bottom", zorder=40)
+
+
+def coiled(line: Array, amplitude: float, pitch: float) -> Array:
+    """A spring along a line (points, 2): coils between two points, else the line as it is."""
+    return zigzag(line[0], line[1], amplitude, pitch) if len(line) == 2 else line
 
 
 def zigzag(a: Array, b: Array, amplitude: float, pitch: float = 0.0) -> Array:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from importlib.util import find_spec
+from itertools import pairwise
 
 import numpy as np
 
@@ -46,17 +47,18 @@ def to_text(mechanism: Mechanism) -> str:
         document.layers.add(name, color=colour)
     space = document.modelspace()
     drawn = [place(end) for bar in skeleton.bars for end in (bar.a, bar.b)]
-    drawn += [place(end) for pair in skeleton.springs for end in pair]
+    drawn += [place(point) for line in skeleton.springs for point in line]
     size = float(np.ptp(np.array(drawn), axis=0).max())
     for bar in skeleton.bars:
         space.add_line(place(bar.a), place(bar.b), dxfattribs={"layer": "LINKS"})
     for point in skeleton.joints:
         space.add_circle(place(point), JOINT * size, dxfattribs={"layer": "JOINTS"})
-    for i, (spring, (a, b)) in enumerate(zip(mechanism.springs, skeleton.springs, strict=True), start=1):
-        space.add_line(place(a), place(b), dxfattribs={"layer": "SPRINGS"})
-        middle = np.mean([place(a), place(b)], axis=0)
-        texts = [(f"k{i} = {spring.stiffness:.6g} N/m, {spring.name}", middle)]
-        for letter, end, body, p in (("a", a, spring.body_a, spring.p_a), ("b", b, spring.body_b, spring.p_b)):
+    for i, (spring, line) in enumerate(zip(mechanism.springs, skeleton.springs, strict=True), start=1):
+        for a, b in pairwise(line):
+            space.add_line(place(a), place(b), dxfattribs={"layer": "SPRINGS"})
+        value, unit = spring.strength
+        texts = [(f"k{i} = {value:.6g} {unit}, {spring.name}", np.mean([place(point) for point in line], axis=0))]
+        for letter, end, (body, p) in zip("ab", line, spring.ends, strict=False):
             space.add_point(place(end), dxfattribs={"layer": "ATTACHMENTS"})
             own = ", ".join(f"{round(MM * value, 3) + 0.0:g}" for value in p)
             texts.append((f"{letter}{i} {body} ({own})", place(end)))

@@ -88,10 +88,9 @@ def _built(bill: Bill) -> Iterator[Text]:
         return
     yield Text(f"springs: {1000 * bill.mass:.4g} g in all")
     parts = []
-    for i, (name, unit) in enumerate(zip(bill.balance.coordinates, bill.balance.units, strict=True)):
-        unit = "N m" if unit == "rad" else "N"
+    for i, name in enumerate(bill.balance.coordinates):
         residual, friction = bill.left.residual[i], bill.left.friction[i]
-        parts.append(f"{name} {residual:.3g} + {friction:.3g} {unit}")
+        parts.append(f"{name} {residual:.3g} + {friction:.3g} {name.load_unit}")
     yield Text(f"as built, masses included: {_percent(bill.left.share)} of the unbalanced peak", style="bold")
     yield Text(f"  residual + friction of the springs at most: {', '.join(parts)}")
     shares = ", ".join(f"{kind} {_percent(share)}" for kind, share in bill.options.friction.items())

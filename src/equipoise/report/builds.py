@@ -33,9 +33,9 @@ def _draw(figure: Any, found: Tolerance) -> None:
         title += f"  ·  {100 * found.yield_:.3g} % within friction"
     figure.text(0.02, 0.92, title, fontsize=15, weight="bold", color=style.INK, parse_math=False)
     axes = figure.add_axes((0.07, 0.15, 0.46, 0.7))
-    for unit, line in (("rad", "-"), ("m", ":")):
-        _histograms(axes, found, unit, line)
-    units = " or ".join(dict.fromkeys("N m" if u == "rad" else "N" for u in found.units))
+    for turns, line in ((True, "-"), (False, ":")):
+        _histograms(axes, found, turns, line)
+    units = " or ".join(dict.fromkeys(coordinate.load_unit for coordinate in found.coordinates))
     axes.set_xlabel(f"largest residual torque over {found.poses:,} poses [{units}]", color=style.INK)
     axes.set_ylabel("builds", color=style.INK)
     axes.set_xlim(left=0)
@@ -52,8 +52,8 @@ def _draw(figure: Any, found: Tolerance) -> None:
             box.spines[side].set_visible(False)
 
 
-def _histograms(axes: Any, found: Tolerance, unit: str, line: str) -> None:
-    own = [j for j, other in enumerate(found.units) if other == unit]
+def _histograms(axes: Any, found: Tolerance, turns: bool, line: str) -> None:
+    own = [j for j, coordinate in enumerate(found.coordinates) if coordinate.turns == turns]
     largest = max((float(found.peak[:, j].max()) for j in own), default=0.0)
     for j in own:
         peak, colour = found.peak[:, j], style.spring_colour(j)

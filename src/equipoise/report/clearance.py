@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
 from rich.text import Text
 
 from ..clearance import Clearance
 from ..kinematics import Tree
 from ..mechanism import Mechanism
+from .text import pose
 
 LISTED = 8  # distances
 
@@ -25,12 +25,7 @@ def clearance_lines(mechanism: Mechanism, found: Clearance, limit: float) -> Ite
             f"{first.spring} to {first.other}",
             style="bold green" if good else "bold yellow",
         )
-        tree = Tree.of(mechanism)
-        pose = ", ".join(
-            f"{name} {np.degrees(value):.1f} deg" if unit == "rad" else f"{name} {1e3 * value:.1f} mm"
-            for name, value, unit in zip(tree.coordinates, first.configuration, tree.units, strict=True)
-        )
-        yield Text(f"worst pose: {pose}")
+        yield Text(f"worst pose: {pose(Tree.of(mechanism).coordinates, first.configuration)}")
     for gap in found.gaps[:LISTED]:
         yield Text(f"  {1e3 * gap.distance:9.3f} mm  {gap.spring} to {gap.other}")
     for line in found.lines:

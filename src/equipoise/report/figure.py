@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance, check
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..errors import Fault, InputError
 from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree
@@ -144,15 +144,14 @@ def holding(mechanism: Mechanism, balance: Balance, before: Array, after: Array)
     """The largest holding torque in a pose, without and with springs."""
     if not len(before):
         return ""
-    units = np.array(balance.units)
-    unit = "rad" if "rad" in units else "m"
-    what, symbol = loads.UNITS[unit]
-    largest = [float(np.abs(torque[units == unit]).max()) for torque in (before, after)]
-    text = f"largest holding {what} {style.number(largest[0])}"
+    kind = next((c for c in balance.coordinates if c.turns), balance.coordinates[0])
+    own = np.array([c.turns == kind.turns for c in balance.coordinates])
+    largest = [float(np.abs(torque[own]).max()) for torque in (before, after)]
+    text = f"largest holding {kind.load} {style.number(largest[0])}"
     if mechanism.springs:
         limit = loads.below(balance)
         text += f" → {style.number(largest[1]) if limit is None else 0}"
-    return f"{text} {symbol}"
+    return f"{text} {kind.load_unit}"
 
 
 def _legend(figure: Any, mechanism: Mechanism) -> None:
@@ -169,12 +168,13 @@ def _legend(figure: Any, mechanism: Mechanism) -> None:
         y = i + 0.5
         path = arm.zigzag(np.array([0.0, y]), np.array([9.0, y]), 0.26)
         axes.plot(*path.T, color=style.spring_colour(i), linewidth=2.0, solid_joinstyle="round")
-        stiffness = f"{f'{spring.stiffness:#.4g}'.rstrip('.')} N/m"
-        pair = f"{style.clean(spring.body_a, 26)} – {style.clean(spring.body_b, 26)}"
+        value, unit = spring.strength
+        stiffness = f"{f'{value:#.4g}'.rstrip('.')} {unit}"
+        where = " – ".join(style.clean(part, 26) for part in spring.where.split(" – "))
         look = {"va": "center", "fontsize": size, "parse_math": False}
         axes.text(11, y, style.clean(spring.name, 22), color=style.INK, **look)
         axes.text(44, y, stiffness, ha="right", color=style.INK, **look)
-        axes.text(47, y, pair, color=style.FAINT, **look)
+        axes.text(47, y, where, color=style.FAINT, **look)
     if len(named) < len(springs):
         text = f"and {len(springs) - len(named)} more springs"
         axes.text(11, lines - 0.5, text, va="center", fontsize=size, color=style.FAINT)
@@ -190,9 +190,9 @@ def _torque(figure: Any, balance: Balance) -> None:
     left, right, bottom, top, gap = 0.625 + 0.0068 * longest, 0.97, 0.185, 0.79, 0.13
     loads.key(figure, balance, 0.625, 0.845)
     row = min((top - bottom - gap * (len(groups) - 1)) / len(rows), 0.17)
-    for unit, group in groups.items():
+    for kind, group in groups.items():
         axes = figure.add_axes((left, top - row * len(group), right - left, row * len(group)))
-        loads.draw(axes, balance, unit, group)
+        loads.draw(axes, balance, kind, group)
         top -= row * len(group) + gap
     text = f"solid: rms; pale and number: largest, over {balance.certificate.samples} random poses"
     if len(rows) == loads.MOST < len(names):

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array, Integers
 from ..balance import Balance
+from ..coordinate import Coordinate, Slide
 from . import style
 
 MOST = 12  # coordinates shown
@@ -15,19 +16,20 @@ NAME = 24  # letters of a coordinate's name
 THICKEST = 0.3  # [in] a bar
 TINY = 1e-9  # [N m or N] torque below this is shown as nothing
 LOG = 0.02  # a residual below this share of the unbalanced torque needs a logarithmic axis to be seen
-UNITS = {"rad": ("torque", "N m"), "m": ("force", "N")}
+Kind = type[Coordinate]  # all that turn, or all that slide
 
 
-def shown(balance: Balance) -> dict[str, Integers]:
-    """Unit "rad" or "m" -> numbers of the coordinates to show, in their order, at most `MOST` in all."""
-    units = np.array(balance.units)
-    share = np.zeros(len(units))
-    for unit in UNITS:
-        largest = balance.unbalanced.max[units == unit].max(initial=0)
-        share[units == unit] = balance.unbalanced.max[units == unit] / largest if largest > 0 else 0.0
+def shown(balance: Balance) -> dict[Kind, Integers]:
+    """Kind -> numbers of the coordinates to show, in their order, at most `MOST` in all."""
+    turns = np.array([coordinate.turns for coordinate in balance.coordinates], bool)
+    share = np.zeros(len(turns))
+    for own in (turns, ~turns):
+        largest = balance.unbalanced.max[own].max(initial=0)
+        share[own] = balance.unbalanced.max[own] / largest if largest > 0 else 0.0
     keep = np.sort(np.argsort(-share, kind="stable")[:MOST])
-    groups: dict[str, Integers] = {unit: keep[units[keep] == unit] for unit in UNITS if (units[keep] == unit).any()}
-    loaded = {unit: rows for unit, rows in groups.items() if _top(balance, rows) > TINY}
+    groups: dict[Kind, Integers] = {Coordinate: keep[turns[keep]], Slide: keep[~turns[keep]]}
+    groups = {kind: rows for kind, rows in groups.items() if len(rows)}
+    loaded = {kind: rows for kind, rows in groups.items() if _top(balance, rows) > TINY}
     return loaded or groups
 
 
@@ -39,9 +41,8 @@ def below(balance: Balance) -> float | None:
     return max(TINY, 10.0 ** np.ceil(np.log10(largest))) if largest > 0 else TINY
 
 
-def draw(axes: Any, balance: Balance, unit: str, rows: Integers) -> None:
-    """Bars of coordinates `rows`, all of `unit`: solid up to the rms, pale up to the largest."""
-    what, symbol = UNITS[unit]
+def draw(axes: Any, balance: Balance, kind: Kind, rows: Integers) -> None:
+    """Bars of coordinates `rows`, all of a kind: solid up to the rms, pale up to the largest."""
     springs, limit = bool(balance.mechanism.springs), below(balance)
     before = balance.unbalanced.max[rows], balance.unbalanced.rms[rows]
     after = balance.residual.max[rows], balance.residual.rms[rows]
@@ -70,7 +71,7 @@ def draw(axes: Any, balance: Balance, unit: str, rows: Integers) -> None:
         axes.set_xlim(0, top * 1.16)
     axes.set_ylim(len(rows) - 0.45, -0.55)
     axes.set_yticks([])
-    axes.set_xlabel(f"holding {what} [{symbol}]" + (", logarithmic" if log else ""))
+    axes.set_xlabel(f"holding {kind.load} [{kind.load_unit}]" + (", logarithmic" if log else ""))
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(style.FAINT)
     axes.tick_params(axis="x", colors=style.FAINT)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
 from html import escape
 from zlib import crc32
 
 from ..balance import Balance
+from ..notebook import register
 from ..synthesis import Design
 from .page import design as sections
 from .page.html import block
@@ -15,16 +15,10 @@ from .schematic import schematic
 from .text import percent, verdict
 
 
-@singledispatch
-def html(value: object) -> str:
-    """The value as a piece of HTML."""
-    raise TypeError(f"{type(value).__name__} does not show itself")
-
-
-@html.register
-def _(value: Balance) -> str:
+def balance_html(value: Balance) -> str:
+    """The verdict, the picture and the tables."""
     key = f"scheme-{crc32(repr(value.mechanism).encode()):08x}"  # a notebook shows many
-    tables = [sections.springs_table(value)] if value.mechanism.springs else []
+    tables = sections.springs_tables(value)
     tables += [sections.torque_table(value)] if value.coordinates else []
     parts = [
         f"<p><strong>{escape(value.mechanism.name)}</strong>: {escape(verdict(value).plain)}</p>",
@@ -34,14 +28,19 @@ def _(value: Balance) -> str:
     return f"<div>{''.join(parts)}</div>"
 
 
-@html.register
-def _(value: Design) -> str:
+def design_html(value: Design) -> str:
+    """How far from the best it is, and its balance."""
     gap = "no bound is known" if value.certified_gap is None else f"within {percent(value.certified_gap)} of the best"
     return (
-        f"<p>method {escape(value.method)}, objective {escape(value.objective)} torque: {gap}</p>{html(value.balance)}"
+        f"<p>method {escape(value.method)}, objective {escape(value.objective)} torque: {gap}</p>"
+        f"{balance_html(value.balance)}"
     )
 
 
 def svg(value: Balance | Design) -> str:
     """The schematic of the value's mechanism."""
     return schematic(value.mechanism).svg()
+
+
+register(Balance, html=balance_html, svg=svg)
+register(Design, html=design_html, svg=svg)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..energy.potential import Potential, lumped_masses
+from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, sample
 from ..kinematics.sampling import bounds, inside
+from ..masses import lumped_masses
 from ..mechanism import Mechanism
 from .skeleton import Skeleton
 

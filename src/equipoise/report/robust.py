@@ -41,8 +41,8 @@ def sweep_table(found: Sweep) -> Table:
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("payload", justify="right")
     first = found.balances[0]
-    for name, unit in zip(first.coordinates, first.units, strict=True):
-        table.add_column(Text(f"{name} [{'N m' if unit == 'rad' else 'N'}]"), justify="right")
+    for coordinate in first.coordinates:
+        table.add_column(Text(f"{coordinate} [{coordinate.load_unit}]"), justify="right")
     for mass, balance in zip(found.payloads, found.balances, strict=True):
         floor = 1e-10 * float(balance.unbalanced.max.max(initial=0))
         table.add_row(f"{mass:.4g} kg", *(number(float(v) if v > floor else 0.0) for v in balance.residual.max))
@@ -68,9 +68,9 @@ def adjustment_lines(found: Adjustment) -> Iterator[RenderableType]:
         table.add_column(title, justify="left" if title == "joint" else "right", no_wrap=True)
     balance = found.ends[0]
     floor = 1e-10 * float(found.ends[1].unbalanced.max.max(initial=0))
-    for name, unit, left, least in zip(balance.coordinates, balance.units, found.left, found.bound, strict=True):
+    for coordinate, left, least in zip(balance.coordinates, found.left, found.bound, strict=True):
         cells = (number(float(value) if value > floor else 0.0) for value in (left, least))
-        table.add_row(Text(name), *cells, "N m" if unit == "rad" else "N")
+        table.add_row(Text(coordinate), *cells, coordinate.load_unit)
     yield table
 
 
@@ -95,7 +95,7 @@ def _table(found: Tolerance) -> Table:
         table.add_column(title, justify="right", no_wrap=True)
     p95, p99 = np.percentile(found.peak, (95, 99), axis=0)
     order = list(found.friction)
-    for j, (name, unit) in enumerate(zip(found.coordinates, found.units, strict=True)):
+    for j, name in enumerate(found.coordinates):
         peak = found.peak[:, j]
         drawn = found.nominal[j] if found.nominal[j] > 1e-9 * p95.max(initial=0) else 0.0
         held = ["-", "-"]
@@ -103,5 +103,5 @@ def _table(found: Tolerance) -> Table:
             least = float(np.percentile(found.margin[:, order.index(name)], 5))
             held = [number(found.friction[name]), f"{'-' if least < 0 else ''}{number(abs(least))}"]
         cells = [number(float(v)) for v in (drawn, peak.mean(), peak.std(), p95[j], p99[j])]
-        table.add_row(Text(name), *cells, *held, "N m" if unit == "rad" else "N")
+        table.add_row(Text(name), *cells, *held, name.load_unit)
     return table

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..kinematics import Poses, Tree
 from ..mechanism import Mechanism
 from . import style
-from .arm import window, zigzag
+from .arm import coiled, window
 from .drawing import SMALL, THICK, THIN, Drawing, Label, Line, Pair
 from .poses import View, choose
 from .skeleton import Bar, Point, Skeleton
@@ -79,16 +79,17 @@ class _Pen:
             self.disc(self.at(point), JOINT, PAPER, style.EDGE)
         for point in self.skeleton.masses:
             self.square(self.at(point))
-        ends = [(self.at(a), self.at(b)) for a, b in self.skeleton.springs]
-        for i, (a, b) in enumerate(ends):
-            path = zigzag(a, b, 0.018 * HEIGHT, 0.017 * HEIGHT)
+        lines = [np.array([self.at(point) for point in line]) for line in self.skeleton.springs]
+        for i, line in enumerate(lines):
+            path = coiled(line, 0.018 * HEIGHT, 0.017 * HEIGHT)
             self.line(path, PAPER, 5 * THIN)
             self.line(path, style.spring_colour(i), 1.3 * THICK)
-            for end in (a, b):
+            for end in line[[0, -1]]:
                 self.disc(end, END, style.spring_colour(i))
         placed: list[Array] = []
-        for i, (a, b) in enumerate(ends):
-            for letter, p in (("a", a), ("b", b), ("k", (a + b) / 2)):
+        for i, line in enumerate(lines):
+            marks = (("a", line[0]), ("b", line[-1])) if len(line) == 2 else ()
+            for letter, p in (*marks, ("k", line.mean(axis=0))):
                 self.label(symbol(letter, i), p, placed)
 
     def at(self, point: Point) -> Array:
@@ -158,8 +159,11 @@ def _legend(drawing: Drawing, mechanism: Mechanism, foot: float) -> None:
         y = foot - ROW * (i + 1)
         drawing.label((3.0, y), symbol("k", i), SMALL, bold=True)
         drawing.label((name, y), style.clean(spring.name, 16), SMALL)
-        drawing.label((stiffness, y), f"{spring.stiffness:.5g} N/m", SMALL, "end")
-        for x, body, p in zip(ends, (spring.body_a, spring.body_b), (spring.p_a, spring.p_b), strict=True):
+        value, unit = spring.strength
+        drawing.label((stiffness, y), f"{value:.5g} {unit}", SMALL, "end")
+        if not spring.ends:
+            drawing.label((ends[0], y), style.clean(spring.where, 40), SMALL)
+        for x, (body, p) in zip(ends, spring.ends, strict=False):
             place = ", ".join(f"{round(1e3 * value, 1) + 0.0:g}" for value in p)
             drawing.label((x, y), f"{style.clean(body, 12)} ({place})", SMALL)
 

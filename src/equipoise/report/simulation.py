@@ -40,8 +40,8 @@ def release_lines(found: Release) -> Iterator[RenderableType]:
     for title in ("held without springs", "with springs", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     bare, held = (np.abs(x).max(axis=0) for x in (found.unbalanced, found.design.holding))
-    for name, unit, a, b in zip(found.coordinates, found.units, bare, held, strict=True):
-        table.add_row(Text(name), f"{a:.4g}", f"{b:.2g}", "N m" if unit == "rad" else "N")
+    for name, a, b in zip(found.coordinates, bare, held, strict=True):
+        table.add_row(Text(name), f"{a:.4g}", f"{b:.2g}", name.load_unit)
     yield table
     yield Text(
         f"energy drift {found.design.energy.max():.2g} J, constraint error {found.design.constraint_error:.2g} m"
@@ -56,9 +56,8 @@ def playback_lines(found: Playback) -> Iterator[RenderableType]:
     for title in ("peak without springs", "with springs", "unit", "work without springs", "with springs", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     (peak, bare_peak), (work, bare_work) = found.peak, found.work
-    for name, unit, a, b, c, d in zip(found.coordinates, found.units, bare_peak, peak, bare_work, work, strict=True):
-        torque = "N m" if unit == "rad" else "N"
-        table.add_row(Text(name), f"{a:.4g}", f"{b:.4g}", torque, f"{c:.4g}", f"{d:.4g}", "J")
+    for name, a, b, c, d in zip(found.coordinates, bare_peak, peak, bare_work, work, strict=True):
+        table.add_row(Text(name), f"{a:.4g}", f"{b:.4g}", name.load_unit, f"{c:.4g}", f"{d:.4g}", "J")
     yield table
     whole = found.gravity + found.springs
     yield Text(f"over the motion gravity's energy varies by {np.ptp(found.gravity):.5g} J, that of gravity and springs "

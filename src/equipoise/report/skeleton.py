@@ -42,7 +42,7 @@ class Skeleton:
         bars: the bodies, from joint to joint or loop end, and of a last body to its centre of mass or payload.
         brackets: thin lines from a body to the spring ends and payloads that are not on it.
         joints: of joints that move.  base: where the mechanism stands.
-        springs, masses: one per spring and point mass.
+        springs: the line along which each is drawn, from end to end.  masses: one per point mass.
         fixed: numbers of the bodies that cannot move, the world among them.
     """
 
@@ -50,7 +50,7 @@ class Skeleton:
     brackets: tuple[Bar, ...]
     joints: tuple[Point, ...]
     base: tuple[Point, ...]
-    springs: tuple[tuple[Point, Point], ...]
+    springs: tuple[tuple[Point, ...], ...]
     masses: tuple[Point, ...]
     fixed: frozenset[int]
 
@@ -67,15 +67,15 @@ class Skeleton:
             if link.joint.type == "fixed" and link.parent in fixed:
                 fixed.add(link.body)
         springs = tuple(
-            (Point(tree.index[s.body_a], np.array(s.p_a)), Point(tree.index[s.body_b], np.array(s.p_b)))
-            for s in mechanism.springs
+            tuple(Point(tree.index[body], np.array(p)) for body, p in spring.outline(tree))
+            for spring in mechanism.springs
         )
         masses = tuple(Point(tree.index[m.body], np.array(m.position)) for m in mechanism.masses)
         bars = _bars(tree, masses)
         met = _met(tree)
         base = (*(Point(0, link.p0) for link in tree.links if link.parent == 0), *(end for end in met if not end.body))
         rest = tree.poses(tree.rest[None])
-        ends = [end for pair in springs for end in pair]
+        ends = [Point(tree.index[body], np.array(p)) for spring in mechanism.springs for body, p in spring.ends]
         brackets = [_bracket(end, bars, base, fixed, rest) for end in (*ends, *masses)]
         return Skeleton(
             bars=bars,
@@ -91,7 +91,7 @@ class Skeleton:
         """(N, K, 3) every point that is drawn."""
         points = [*self.base, *self.joints, *self.masses]
         points += [end for bar in (*self.bars, *self.brackets) for end in (bar.a, bar.b)]
-        points += [end for pair in self.springs for end in pair]
+        points += [point for line in self.springs for point in line]
         if not points:
             return np.zeros((len(poses.p), 1, 3))
         return np.stack([point.at(poses) for point in points], axis=1)
@@ -106,10 +106,10 @@ class Skeleton:
         return places[:, [i for i in range(len(found)) if i not in coincide]]
 
     def ends(self, poses: Poses) -> Array:
-        """(N, springs, 2, 3) where the springs are attached."""
+        """(N, springs, 2, 3) where each begins and ends."""
         if not self.springs:
             return np.zeros((len(poses.p), 0, 2, 3))
-        return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, b in self.springs], axis=1)
+        return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, *_, b in self.springs], axis=1)
 
 
 def _met(tree: Tree) -> tuple[Point, ...]:

@@ -9,10 +9,11 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..arrays import Array
 from ..balance import Balance
+from ..coordinate import Coordinate
 from ..energy.fourier import EXACT
 from ..mechanism import Mechanism
-from ..spring import Vec3
 from ..synthesis import METHODS, Design, Parameter
 from ..synthesis.free_length import Ordinary
 from ..units import SI_UNITS
@@ -43,11 +44,7 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
         f"total {_range((low, high))}, mean {balance.constant:.6g} J"
     )
     if not balance.exact and len(balance.coordinates):
-        pose = ", ".join(
-            f"{name} {_pose(value, unit)}"
-            for name, value, unit in zip(balance.coordinates, balance.worst_configuration, balance.units, strict=True)
-        )
-        yield Text(f"worst pose: {pose}")
+        yield Text(f"worst pose: {pose(balance.coordinates, balance.worst_configuration)}")
     yield from spring_lines(balance)
 
 
@@ -76,21 +73,18 @@ def torque_table(balance: Balance) -> Table:
     for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
-    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
+    for j, coordinate in enumerate(balance.coordinates):
         loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
         bound = "-" if balance.bound is None else torque(balance.bound[j], floor)
         cells = [torque(load[j], floor) for load in loads]
-        table.add_row(Text(name), *cells, bound, "N m" if unit == "rad" else "N")
+        table.add_row(Text(coordinate), *cells, bound, coordinate.load_unit)
     return table
 
 
 def spring_lines(balance: Balance) -> Iterator[Text]:
-    """Each spring with its stiffness, attachments, greatest length and greatest force."""
+    """Each spring: how strong, where, and its greatest use."""
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
-        free = f", free length {1e3 * spring.free_length:.4g} mm" if spring.free_length else ""
-        ends = f"{spring.body_a} {_millimetres(spring.p_a)} to {spring.body_b} {_millimetres(spring.p_b)} mm"
-        most = f"up to {1e3 * use.max_length:.0f} mm, {use.max_force:.3g} N"
-        yield Text(f"{spring.name}: {spring.stiffness:.5g} N/m{free}, {ends}, {most}")
+        yield Text(spring.sentence(use.path, use.force))
 
 
 def design_lines(design: Design) -> Iterator[RenderableType]:
@@ -158,7 +152,7 @@ def front_table(design: Design) -> Table:
             "exact" if row.exact else torque(row.residual),
             percent(row.residual / design.unbalanced),
             "-" if row.bound is None else torque(row.bound),
-            Text(" ".join(f"{a}:{b}" for a, b in row.pairs)),
+            Text(" ".join(":".join(pair) for pair in row.pairs)),
         )
     return table
 
@@ -215,9 +209,6 @@ def _range(pair: tuple[float, float]) -> str:
     return f"{pair[0]:.6g} to {pair[1]:.6g} J"
 
 
-def _pose(value: float, unit: str) -> str:
-    return f"{np.degrees(value):.1f} deg" if unit == "rad" else f"{1e3 * value:.1f} mm"
-
-
-def _millimetres(p: Vec3) -> str:
-    return "(" + ", ".join(f"{round(1e3 * value, 1) + 0.0:.1f}" for value in p) + ")"
+def pose(coordinates: Sequence[Coordinate], values: Array) -> str:
+    """Every coordinate with its value, on one line."""
+    return ", ".join(coordinate.show(value) for coordinate, value in zip(coordinates, values.tolist(), strict=True))

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import check, fourier_form
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..errors import InfeasibleError
 from ..kinematics import Tree
 from ..mechanism import Body, Joint, Mechanism

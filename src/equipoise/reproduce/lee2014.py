@@ -14,8 +14,9 @@ import numpy as np
 from ..arrays import Array
 from ..balance import check
 from ..energy.blocks import StiffnessBlocks
+from ..energy.evaluate import Potential
 from ..energy.planar import Installation, PlanarArm
-from ..energy.potential import Potential
+from ..errors import EquipoiseError
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism
 from ..synthesis.planar.criteria import Objective, failures, sign_failures
@@ -151,7 +152,7 @@ def completed(case: Case, *free: float) -> tuple[Installation, ...]:
     x = equations.newton(equations.held(np.array(start)))
     springs = None if x is None else equations.installed(x)
     if springs is None:
-        raise ArithmeticError(f"the design equations of Table 5({case.letter}) were not solved")
+        raise EquipoiseError(f"the design equations of Table 5({case.letter}) were not solved")
     return springs
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance, check
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..errors import InfeasibleError
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism, Workspace

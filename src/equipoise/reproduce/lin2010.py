@@ -15,7 +15,8 @@ from numpy.polynomial import Polynomial
 
 from ..arrays import Array
 from ..balance import check
-from ..energy.potential import Potential, State
+from ..energy.evaluate import Potential
+from ..energy.reference import State
 from ..io.dh import expand
 from ..io.schema import DhRow, DhTable
 from ..kinematics import Tree

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import check
-from ..energy.potential import Potential
+from ..energy.evaluate import Potential
 from ..kinematics import Tree
 from ..mechanism import Body, Joint, Mechanism
 from ..synthesis.delta.legs import DeltaLeg, delta_legs

@@ -16,14 +16,15 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import Balance, check
+from ..elements import lines
+from ..energy.evaluate import Potential
 from ..energy.peak import climb
-from ..energy.potential import Potential
 from ..errors import InputError
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
-from ..synthesis.problem import Progress
 from .moves import Handle, Move, Way, What, moved, sets, value
 from .scatter import Scatter
 from .torque_map import TorqueMap
@@ -100,7 +101,8 @@ def adjust(
     """
     if not KEPT <= tolerance < 1:
         raise InputError(f"the tolerance must be a share from {KEPT:g} to less than 1, found {tolerance:g}")
-    if not mechanism.springs:
+    springs = lines(mechanism, "adjust")
+    if not springs:
         raise InputError(f"mechanism '{mechanism.name}' has no springs to adjust")
     if not payload.low < payload.high:
         raise InputError("the payload must have a range, the smallest and the largest; for one, design with it")
@@ -108,16 +110,14 @@ def adjust(
     problem = _Problem(mechanism, payload, sample(tree, POSES, seed))
     if not problem.unit:
         raise InputError(f"a payload on '{payload.link}' loads no joint")
-    handles = [Handle(i, what) for i in range(len(mechanism.springs)) for what in get_args(What)]
-    ways = []
+    handles = [Handle(i, what) for i in range(len(springs)) for what in get_args(What)]
+    ways, report = [], progress or silent
     for i, handle in enumerate(handles):
-        if progress:
-            progress("trying what to move", i / (len(handles) + 2))
+        report("trying what to move", i / (len(handles) + 2))
         ways.append(problem.way((handle,)))
     chosen = problem.fewest(handles, tolerance)
     best = problem.way(chosen)
-    if progress:
-        progress("judging the adjusted design", len(handles) / (len(handles) + 2))
+    report("judging the adjusted design", len(handles) / (len(handles) + 2))
     ends = (check(payload.on(best.low, payload.low)), check(payload.on(best.high, payload.high)))
     fixed = problem.settled(chosen, payload.middle)
     left = payload.residual(fixed, fixed.springs)
@@ -211,7 +211,7 @@ class _Problem:
         J = torque_map.jacobian()
         found = []
         for handle in handles:
-            spring = mechanism.springs[handle.spring]
+            spring = lines(mechanism, "adjust")[handle.spring]
             if handle.what == "free_length":
                 alone = replace(mechanism.with_springs((replace(spring, free_length=1.0),)), provenance={})
                 ideal = alone.with_springs((replace(spring, free_length=0.0),))

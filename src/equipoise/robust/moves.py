@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..mechanism import Mechanism
 
 What = Literal["p_a", "p_b", "free_length"]
@@ -73,12 +74,12 @@ def sets(handles: Sequence[Handle]) -> Iterator[tuple[Handle, ...]]:
 
 
 def value(mechanism: Mechanism, handle: Handle) -> Array:
-    return np.atleast_1d(np.array(getattr(mechanism.springs[handle.spring], handle.what), float))
+    return np.atleast_1d(np.array(getattr(lines(mechanism, "adjust")[handle.spring], handle.what), float))
 
 
 def moved(mechanism: Mechanism, handles: Sequence[Handle], step: Array) -> Mechanism:
     """Every handle by its part of the step; a free length stays at least 0."""
-    springs, start = list(mechanism.springs), 0
+    springs, start = list(lines(mechanism, "adjust")), 0
     for handle in handles:
         now = value(mechanism, handle)
         new = now + step[start : start + len(now)]

@@ -9,6 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ..arrays import Array
+from ..elements import lines
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
@@ -110,10 +111,10 @@ class Drawing:
         self.scatter = scatter
         self.parameters: list[Parameter] = []
         index = Tree.of(mechanism).index
-        self.stiffness = [self._one("stiffness", s.name, "stiffness") for s in mechanism.springs]
+        springs = lines(mechanism, "tolerance")
+        self.stiffness = [self._one("stiffness", s.name, "stiffness") for s in springs]
         self.ends = [
-            (self._three("attachment", s.name, "p_a"), self._three("attachment", s.name, "p_b"))
-            for s in mechanism.springs
+            (self._three("attachment", s.name, "p_a"), self._three("attachment", s.name, "p_b")) for s in springs
         ]
         self.offsets = {index[j.child]: self._three("length", j.name, "xyz") for j in mechanism.joints}
         self.lumps = list(self._lumps(mechanism, index))
@@ -126,11 +127,9 @@ class Drawing:
                 relative, place = self._one("mass", item, "mass"), self._three("length", item, label)
                 yield Lump(index[body], mass, np.array(p), relative, place)
         for spring, ends in zip(mechanism.springs, self.ends, strict=True):
-            shares = (spring.mass_split, 1 - spring.mass_split)
-            bodies, points = (spring.body_a, spring.body_b), (spring.p_a, spring.p_b)
-            for body, share, p, place in zip(bodies, shares, points, ends, strict=True):
-                if spring.mass * share and index[body]:
-                    yield Lump(index[body], spring.mass * share, np.array(p), None, place)
+            for (body, mass, p), place in zip(spring.lumps(), ends, strict=True):
+                if mass and index[body]:
+                    yield Lump(index[body], mass, np.array(p), None, place)
 
     def _one(self, kind: Kind, item: str, value: str, scale: float = 1.0) -> int | None:
         deviation = self.scatter.deviation(kind) * scale

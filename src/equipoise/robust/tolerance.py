@@ -10,15 +10,17 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..coordinate import Coordinate
 from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
-from ..synthesis.problem import Progress
-from ..validate import MAX_SAMPLES, whole_number
+from ..validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from .scatter import Parameter, Scatter
 from .torque_map import TorqueMap
 
+MOST = 1_000_000_000  # builds times poses: some minutes
 CHUNK_ENTRIES = 1_500_000  # torques held at a time: they stay in the cache
 PERCENTILES = (5, 50, 95, 99)
 
@@ -51,13 +53,8 @@ class Tolerance:
     share: Array
 
     @property
-    def coordinates(self) -> tuple[str, ...]:
+    def coordinates(self) -> tuple[Coordinate, ...]:
         return Tree.of(self.mechanism).coordinates
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        """ "rad" or "m" for each coordinate; its torque is in N m or N."""
-        return Tree.of(self.mechanism).units
 
     @cached_property
     def margin(self) -> Array:
@@ -135,7 +132,7 @@ def tolerance(
         UnsupportedError: lengths scatter and the mechanism has loops.
     """
     whole_number("builds", builds, 2, MAX_SAMPLES)
-    whole_number("poses", poses, 1, MAX_SAMPLES)
+    whole_number("poses", poses, 1, min(MAX_SAMPLES, MOST // builds, MAX_NUMBERS // _numbers(mechanism)))
     whole_number("seed", seed, 0)
     tree = Tree.of(mechanism)
     if not tree.n:
@@ -148,7 +145,7 @@ def tolerance(
     rows = tree.n * poses
     peak, mean, square = np.empty((builds, tree.n)), np.zeros(rows), np.zeros(rows)
     rng, size = np.random.default_rng(seed), max(16, CHUNK_ENTRIES // rows)
-    nominal = torque.nominal.astype(np.float32)[:, None]
+    nominal, report = torque.nominal.astype(np.float32)[:, None], progress or silent
     for start in range(0, builds, size):
         count = min(size, builds - start)
         tau = torque(scatter.draw(rng, count, len(torque.parameters)) * torque.deviation)
@@ -156,8 +153,7 @@ def tolerance(
         tau -= nominal  # a variance about the drawing loses nothing to rounding
         mean += tau.sum(axis=1)
         square += np.einsum("rb,rb->r", tau, tau)
-        if progress:
-            progress("building", (start + count) / builds)
+        report("building", (start + count) / builds)
     mean /= builds
     J = torque.jacobian()
     weight = np.where(tree.turns, 1.0, Mounts.of(mechanism).reach).repeat(poses)[:, None]
@@ -190,7 +186,7 @@ def _friction(given: Mapping[str, float] | float | None, tree: Tree) -> dict[str
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        given = {name: given for name, turns in zip(tree.coordinates, tree.turns, strict=True) if turns}
+        given = {coordinate: given for coordinate in tree.coordinates if coordinate.turns}
     for name, value in given.items():
         if name not in tree.coordinates:
             problem = f"there is no coordinate {nearest(name, tree.coordinates)}"
@@ -212,3 +208,9 @@ def _columns(values: Array) -> list[dict[str, float]]:
     statistics.pop("max", None)
     statistics["min"] = values.min(axis=0).tolist()
     return [{name: row[i] for name, row in statistics.items()} for i in range(values.shape[1])]
+
+
+def _numbers(mechanism: Mechanism) -> int:
+    """Derivatives that are held for each pose, about: every coordinate's torque by everything that may be off."""
+    off = 7 * len(mechanism.springs) + 4 * (len(mechanism.bodies) + len(mechanism.masses)) + 3 * len(mechanism.joints)
+    return max(1, len(mechanism.coordinates) * off)

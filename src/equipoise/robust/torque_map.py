@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..energy.potential import Potential
+from ..elements import lines
+from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, Velocities
 from ..mechanism import Mechanism
 from ..rotation import skew
@@ -59,7 +60,7 @@ class TorqueMap:
         self.drawing = Drawing(mechanism, scatter)
         self.parameters: tuple[Parameter, ...] = tuple(self.drawing.parameters)
         self.deviation = np.array([p.deviation for p in self.parameters])
-        self.stiffness = np.array([s.stiffness for s in mechanism.springs])
+        self.stiffness = np.array([s.stiffness for s in lines(mechanism, "tolerance")])
         self.nominal = Potential(mechanism)(q).torque.T.ravel()
         self._tree = tree
         self._path = _paths(tree)
@@ -68,7 +69,7 @@ class TorqueMap:
         self._springs: list[Affine] = []
         self._soft: list[Soft | None] = []
         blocks = [self._gravity(columns, np.array(mechanism.gravity))]
-        for i, spring in enumerate(mechanism.springs):
+        for i, spring in enumerate(lines(mechanism, "tolerance")):
             A, B = tree.index[spring.body_a], tree.index[spring.body_b]
             bodies, affine = self._stretch(A, B, np.array(spring.p_a), np.array(spring.p_b), self.drawing.ends[i])
             rate, length = columns.squared(A, B, bodies)

@@ -177,10 +177,11 @@ class Engine:
         if (off > 1e-9).any():
             i = int(off.argmax())
             child = next(link.joint.child for link in tree.links if any(m.row == i for m in link.motions))
-            unit, factor = ("deg", 180 / np.pi) if tree.rotates[i] else ("mm", 1e3)
-            low, high, found = (f"{factor * x:.6g}" for x in (tree.lower[i], tree.upper[i], s[i]))
+            motion = tree.motions[i]
+            unit = motion.shown_unit
+            low, high, found = (f"{motion.scale * x:.6g}" for x in (tree.lower[i], tree.upper[i], s[i]))
             raise InputError(
-                f"pose outside the limits: joint '{tree.motions[i]}' of body '{child}' is at {found} {unit}, its range "
+                f"pose outside the limits: joint '{motion}' of body '{child}' is at {found} {unit}, its range "
                 f"is {low} to {high} {unit}"
             )
         return dict(zip(tree.coordinates, full.tolist(), strict=True))

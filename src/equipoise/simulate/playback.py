@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..coordinate import Coordinate
 from ..errors import InputError
 from ..mechanism import Mechanism
 from .engine import Engine
@@ -18,7 +19,7 @@ class Playback:
     """A motion, and what it takes.
 
     Attributes:
-        name: of the mechanism; coordinates, units: its own, and "rad" or "m" of each.
+        name: of the mechanism; coordinates: its own.
         time: (T,) [s]; motion: (T, n) independent coordinates [rad or m].
         torque, unsprung: (T, n) of the actuators with the springs and without them [N m or N].
         gravity, springs: (T,) potential energies [J], each counted from its value at the start.
@@ -26,8 +27,7 @@ class Playback:
     """
 
     name: str
-    coordinates: tuple[str, ...]
-    units: tuple[str, ...]
+    coordinates: tuple[Coordinate, ...]
     time: Array
     motion: Array
     torque: Array
@@ -82,7 +82,7 @@ def play(mechanism: Mechanism, time: Array, motion: Array, radius: float | None 
     springs = total - gravity
     tree = sprung.tree
     return Playback(
-        mechanism.name, tree.coordinates, tree.units, time, motion, torque, unsprung, gravity - gravity[0],
+        mechanism.name, tree.coordinates, time, motion, torque, unsprung, gravity - gravity[0],
         springs - springs[0], kinetic,
     )  # fmt: skip
 

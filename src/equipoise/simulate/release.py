@@ -13,18 +13,19 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..coordinate import Coordinate
 from ..errors import Fault, InputError
 from ..kinematics.sampling import sample
 from ..mechanism import Mechanism
+from ..progress import Progress, silent
 from ..validate import whole_number
 from .engine import Engine, Settings
 
+MAX_POSES = 10_000  # each is a simulation
 LOOKS = 100  # times that the drift is read during a run
 SECONDS = (0.01, 3600.0)  # of a run
 SOFT = 0.01  # share of its stiffness that the soft spring lacks
 MOVES = 10.0  # times the tolerance that the soft spring must move it at least
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -54,19 +55,18 @@ class Release:
     """The run, and its positive control.
 
     Attributes:
-        coordinates, units: of the mechanism, and "rad" or "m" of each.
+        coordinates: of the mechanism.
         seconds: of every run; tolerance: the drift that counts as staying [rad, or m of slides].
         poses: (poses, n) where it was let go [rad or m].
         joints: names of the engine's joints, in the order of `Drift.moved`.
         settings: of the engine.
         unbalanced: (poses, n) the torque that holds the poses without springs [N m or N].
         radius: [m] of the uniform spheres that stood for bodies without an inertia; None when there are none.
-        soft: the name of the spring that lacked `SOFT` of its stiffness in `control`; None without springs.
+        soft: the name of the spring that lacked `SOFT` of its force in `control`; None without springs.
     """
 
     mechanism: Mechanism
-    coordinates: tuple[str, ...]
-    units: tuple[str, ...]
+    coordinates: tuple[Coordinate, ...]
     seconds: float
     tolerance: float
     poses: Array
@@ -149,7 +149,7 @@ def release(
         UnsupportedError: MJCF cannot express the mechanism.
         EngineError: the simulation diverged.
     """
-    whole_number("poses", poses, 1)
+    whole_number("poses", poses, 1, MAX_POSES)
     whole_number("seed", seed, 0)
     if not SECONDS[0] <= seconds <= SECONDS[1]:
         raise InputError(Fault(("seconds",), f"must be between {SECONDS[0]:g} and {SECONDS[1]:g} s, found {seconds:g}"))
@@ -159,7 +159,7 @@ def release(
     if engine.tree.n == 0:
         raise InputError(f"mechanism '{mechanism.name}' has no joint that moves: nothing to let go")
     q = sample(engine.tree, poses, seed)
-    report = progress or (lambda what, share: None)
+    report = progress or silent
     runs = 2 if control and mechanism.springs else 1
     design = _drift(engine, q, seconds, lambda share: report("letting go", share / runs))
     bare = Engine(mechanism.with_springs(()), radius)
@@ -172,7 +172,7 @@ def release(
     names = tuple(engine.model.joint(j).name for j in range(engine.model.njnt))
     tree = engine.tree
     return Release(
-        mechanism, tree.coordinates, tree.units, seconds, tolerance, q, names, engine.settings, design, unbalanced,
+        mechanism, tree.coordinates, seconds, tolerance, q, names, engine.settings, design, unbalanced,
         radius if any(body.mass and body.inertia is None for body in mechanism.bodies) else None, soft, moved,
     )  # fmt: skip
 
@@ -211,6 +211,5 @@ def _felt_most(mechanism: Mechanism, q: Array, radius: float | None) -> str:
 
 def _softer(mechanism: Mechanism, name: str) -> Mechanism:
     return mechanism.with_springs(
-        replace(spring, stiffness=(1 - SOFT) * spring.stiffness) if spring.name == name else spring
-        for spring in mechanism.springs
+        spring.scaled(1 - SOFT) if spring.name == name else spring for spring in mechanism.springs
     )

@@ -1,145 +1,132 @@
-"""The least torque that any springs can leave: a convex program (THEORY sections 1 and 4).
+"""The least torque that any choice of parts can leave: a convex program (THEORY sections 1 and 4).
 
-Unknowns are the moment matrices N_p >= 0 of the body pairs, 7 x 7 in the regions' own coordinates. Attachments inside
-the regions give linear constraints on N_p: a spring's N is k y y' with y = [u_a; 1; u_b], and summed over springs the
-mean of |u|^2 stays within the ball, or that of u_i^2 within the box. Any set of springs, however many, is a feasible
-point, so the optimum is a lower bound for every design on these pairs and regions.
+Unknowns are those of the blocks, each in its cone. Any set of parts, however many, is a feasible point, so the optimum
+is a lower bound for every design on these blocks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isqrt
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Integers
 from ..errors import EquipoiseError
-from .gram import TRI, TRI_I, TRI_J, Gram, smat, svec
+from .gram import Gram
 
-ONE = int(np.flatnonzero((TRI_I == 3) & (TRI_J == 3))[0])  # the entry of svec(N) that is the sum of stiffnesses
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
-ENDS = ((0, 1, 2), (4, 5, 6))
 
 
 @dataclass(frozen=True)
 class Bound:
-    """The least torque that any springs on the pairs can leave.
+    """The least torque that any parts of the blocks can leave.
 
     Attributes:
         value: as a share of the unbalanced torque (rms or peak): the lesser of the program's primal and dual optimum,
             valid up to the solver's tolerance.
-        N: (pairs, 7, 7) moment matrices that (nearly) reach it.
+        x: the unknowns of each block that (nearly) reach it.
     """
 
     value: float
-    N: Array
+    x: tuple[Array, ...]
 
 
-class Rows:
-    """Linear constraints ``s = b - A x`` in the solver's form, block by block, with a cone for each."""
+class Program:
+    """The blocks' unknowns in their cones, and `extra` more at the end; then rows ``b - A x`` in cones of their own.
 
-    def __init__(self, width: int) -> None:
-        self.width = width
-        self.A: list[Array] = []
+    Each block's unknowns are in a unit that makes its columns of size one.
+    """
+
+    def __init__(self, gram: Gram, extra: int) -> None:
+        self.scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in gram.columns]
+        self.starts = np.cumsum([0, *(block.unknowns for block in gram.blocks)]).tolist()
+        self.width = self.starts[-1] + extra
+        self.columns = [  # as pieces of rows
+            (0, start, own * scale) for start, own, scale in zip(self.starts, gram.columns, self.scale, strict=False)
+        ]
+        self.entries: list[tuple[Integers, Integers, Array]] = []
         self.b: list[Array] = []
         self.cones: list[object] = []
+        self.height = 0
+        for block, start, scale in zip(gram.blocks, self.starts, self.scale, strict=False):
+            for cone in block.cones():
+                g = np.zeros(len(cone.F)) if cone.g is None else cone.g / scale
+                self.add(cone.kind, g, [(0, start, -cone.F)])
 
-    def add(self, A: Array, b: Array, cone: object) -> None:
-        """Append rows with ``b - A x`` in `cone`."""
-        self.A.append(A)
+    def add(self, kind: str, b: Array, pieces: Iterable[tuple[int, int, Array]]) -> None:
+        """Rows with ``b - A x`` in a cone; A is zero but for pieces (its first row, its first unknown, the piece)."""
+        for row, start, A in pieces:
+            i, j = np.nonzero(A)
+            self.entries.append((i + self.height + row, j + start, A[i, j]))
         self.b.append(b)
-        self.cones.append(cone)
+        self.cones.append(_cone(kind, len(b)))
+        self.height += len(b)
+
+    def solve(self) -> Bound:
+        """Minimise the last unknown.
+
+        Raises:
+            EquipoiseError: the solver stopped far from the optimum.
+        """
+        from scipy import sparse
+
+        clarabel = _solver()
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_threads = 1
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
+        n, (i, j, values) = self.width, (np.concatenate(part) for part in zip(*self.entries, strict=True))
+        A, b = sparse.csc_matrix((values, (i, j)), (self.height, n)), np.concatenate(self.b)
+        objective = np.append(np.zeros(n - 1), 1.0)
+        solution = clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, self.cones, settings).solve()
+        # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay safe
+        violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
+        if not violation < STALLED:
+            raise EquipoiseError(
+                f"the convex solver stopped with '{solution.status}': the problem is badly scaled; try a larger radius"
+            )
+        parts = np.split(np.array(solution.x)[: self.starts[-1]], self.starts[1:-1])
+        x = tuple(own * scale for own, scale in zip(parts, self.scale, strict=True))
+        return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), x)
 
 
 def least_rms(gram: Gram) -> Bound:
     """The bound for the root mean square torque of all joints together (rest included)."""
-    clarabel = _solver()
-    R, scale = _scaled(gram)
-    rows, objective = _moments(gram)
-    t = rows.width - 1
-    A = np.zeros((len(gram.d) + 2, rows.width))
-    A[0, t], A[1:-1, :t] = -1.0, -R
-    rows.add(A, np.concatenate([[0.0], gram.d, [gram.rest]]), clarabel.SecondOrderConeT(len(A)))
-    objective[t] = 1.0
-    return _solve(rows, objective, scale)
+    program = Program(gram, extra=1)
+    t = program.width - 1
+    norm = np.concatenate([[0.0], gram.d, [gram.rest]])
+    columns = [(1, start, -own) for _, start, own in program.columns]
+    program.add("second order", norm, [*columns, (0, t, -np.eye(1))])
+    return program.solve()
 
 
 def least_peak(gram: Gram, L: Array, load: Array) -> Bound:
-    """The bound for the largest of the torques ``|L w + load|`` with ``w = sum_p <Q_p, N_p>``.
+    """The bound for the largest of the torques ``|L w + load|`` with ``w = gram.times(x)``.
 
     Args:
         L: (rows, len(w)), load: (rows,), as shares of any unit: see `minimax.Peak`.
     """
-    clarabel = _solver()
     r = L.shape[1]
-    R, scale = _scaled(gram)
-    rows, objective = _moments(gram, extra=r + 1)  # w, and the peak t
-    v, t = rows.width - r - 1, rows.width - 1
-    tie = np.zeros((r, rows.width))
-    tie[:, :v], tie[:, v:t] = R, -np.eye(r)
-    rows.add(tie, np.zeros(r), clarabel.ZeroConeT(r))
+    program = Program(gram, extra=r + 1)  # w, and the peak t
+    w, t = program.width - r - 1, program.width - 1
+    program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
     for sign in (1.0, -1.0):
-        A = np.zeros((len(load), rows.width))
-        A[:, v:t], A[:, t] = sign * L, -1.0
-        rows.add(A, -sign * load, clarabel.NonnegativeConeT(len(load)))
-    objective[t] = 1.0
-    return _solve(rows, objective, scale)
+        program.add("nonnegative", -sign * load, [(0, w, sign * L), (0, t, -np.ones((len(load), 1)))])
+    return program.solve()
 
 
-def _moments(gram: Gram, extra: int = 1) -> tuple[Rows, Array]:
-    """Every N_p positive semidefinite and its attachments in their regions; `extra` more unknowns at the end."""
+def _cone(kind: str, rows: int) -> object:
     clarabel = _solver()
-    pairs = gram.problem.pairs
-    rows = Rows(TRI * len(pairs) + extra)
-    for p in range(len(pairs)):
-        block = np.zeros((TRI, rows.width))
-        block[:, TRI * p : TRI * (p + 1)] = -np.eye(TRI)
-        rows.add(block, np.zeros(TRI), clarabel.PSDTriangleConeT(7))
-    limits = [
-        (p, entries)
-        for p, pair in enumerate(pairs)
-        for name, end in zip(pair, ENDS, strict=True)
-        for entries in ([end] if gram.problem.regions[name].shape == "ball" else [(i,) for i in end])
-    ]
-    A = np.zeros((len(limits), rows.width))
-    for row, (p, entries) in enumerate(limits):
-        for i in entries:
-            A[row, TRI * p + int(np.flatnonzero((i == TRI_I) & (i == TRI_J))[0])] = 1.0
-        A[row, TRI * p + ONE] = -1.0
-    rows.add(A, np.zeros(len(limits)), clarabel.NonnegativeConeT(len(limits)))
-    return rows, np.zeros(rows.width)
-
-
-def _scaled(gram: Gram) -> tuple[Array, Array]:
-    """The map (len(w), 28 pairs) from entries of svec(N) to w, and each pair's unit (pairs,) that makes it size one."""
-    R = svec(gram.Q)
-    scale = 1 / np.maximum(np.linalg.norm(R, axis=(1, 2)), 1e-300)
-    return (R * scale[:, None, None]).transpose(1, 0, 2).reshape(len(gram.d), -1), scale
+    if kind == "semidefinite":
+        return clarabel.PSDTriangleConeT((isqrt(8 * rows + 1) - 1) // 2)
+    name = {"zero": "ZeroConeT", "nonnegative": "NonnegativeConeT", "second order": "SecondOrderConeT"}[kind]
+    return getattr(clarabel, name)(rows)
 
 
 def _solver() -> Any:
     import clarabel  # a compiled module without type information
 
     return clarabel
-
-
-def _solve(rows: Rows, objective: Array, scale: Array) -> Bound:
-    from scipy import sparse
-
-    clarabel = _solver()
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
-    n = len(objective)
-    A, b = sparse.csc_matrix(np.vstack(rows.A)), np.concatenate(rows.b)
-    solution = clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, rows.cones, settings).solve()
-    # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay on the safe side
-    violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
-    if not violation < STALLED:
-        raise EquipoiseError(
-            f"the convex solver stopped with '{solution.status}': the problem is badly scaled; try a larger radius"
-        )
-    N = smat(np.array(solution.x)[: TRI * len(scale)].reshape(-1, TRI)) * scale[:, None, None]
-    return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), N)

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..elements import Vec3
 from ..errors import UnsupportedError
 from ..kinematics import Tree
 from ..mechanism import Mechanism
-from ..spring import Vec3
 from .mounts import Mounts
 from .pseudobase.moments import segments
 

@@ -24,7 +24,7 @@ class FrontRow:
     springs: int
     residual: float
     bound: float | None
-    pairs: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[str, ...], ...]
     exact: bool
 
 
@@ -39,14 +39,14 @@ class Infeasible:
         tried: how many other pairs that was.
     """
 
-    pairs: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[str, ...], ...]
     least: float
     far: float
     remedies: tuple[tuple[str, str], ...]
     tried: int
 
     def __str__(self) -> str:
-        pairs = ", ".join(f"{a}:{b}" for a, b in self.pairs)
+        pairs = ", ".join(":".join(pair) for pair in self.pairs)
         text = f"exact balance is infeasible with springs on {pairs}: "
         text += f"every choice leaves at least {self.least:.4g} N m rms"
         if self.far > 0:

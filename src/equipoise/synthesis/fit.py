@@ -12,17 +12,19 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array
-from ..energy.potential import Potential
+from ..elements import lines
+from ..energy.evaluate import Potential
 from ..kinematics import Tree
 from ..mechanism import Mechanism
-from .gram import stretch
-from .polish import project
-from .problem import Problem, Region
+from .problem import Problem
+from .region import Region, project
+from .spring_block import at_ends, between, stretch
 
 WIDTH = 8  # unknowns of a spring: log stiffness, u_a, u_b in their regions' coordinates (as in `polish`), preload
 SHRUNK = (1.0, 0.5, 0.25)  # starts: one attachment of every spring drawn in by so much, stiffened by as much
 SLACK = 10.0  # weight of a spring shorter than its free length, per share of it
 ITERATIONS, STALLED = 150, 15
+FREE_LENGTHS = "what gives springs a free length, or room,"  # in messages
 Penalty = Callable[[Array], tuple[Array, Array]]
 """Attachments (springs, 2, 3) [m] -> rows to keep at zero, and their derivative (rows, springs, 2, 3)."""
 
@@ -39,7 +41,7 @@ class Fit:
         penalty: Penalty | None,
     ) -> None:
         self.mechanism = mechanism
-        self.springs = [spring for spring in mechanism.springs if spring.name in lengths]
+        self.springs = [spring for spring in lines(mechanism, FREE_LENGTHS) if spring.name in lengths]
         self.free = np.array([lengths[spring.name] for spring in self.springs])
         self.size = np.where(self.free > 0, self.free, 1.0)  # that slack is a share of
         tree = Tree.of(mechanism)
@@ -48,16 +50,16 @@ class Fit:
         own = {b: Region.ball(max(float(np.linalg.norm(p)) for c, p in ends if c == b)) for b, _ in ends}
         own = {body: region for body, region in own.items() if region.half[0] > 0}  # else as large as its link
         self.problem = Problem.of(mechanism, pairs=pairs, regions=own | dict(regions))
-        self.lift = np.array([[self.problem.regions[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
-        self.box = np.array([[self.problem.regions[b].shape == "box" for b in pair] for pair in pairs])
+        self.lift = np.array([[self.problem.attachments[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
+        self.box = np.array([[self.problem.attachments[b].shape == "box" for b in pair] for pair in pairs])
         poses = tree.poses(q)
         velocities = tree.velocities(q, poses)
         self.Z, self.dZ = zip(*(stretch(poses, velocities, *(tree.index[b] for b in p)) for p in pairs), strict=True)
         rest = mechanism.with_springs(s for s in mechanism.springs if s.name not in lengths)
-        self.load = Potential(rest)(q).torque * self.problem.weights
+        self.load = Potential(rest)(q).torque * self.problem.scale
         for dZ in self.dZ:
-            dZ *= self.problem.weights[:, None, None]
-        gravity = Potential(mechanism)(q).gravity_torque * self.problem.weights
+            dZ *= self.problem.scale[:, None, None]
+        gravity = Potential(mechanism)(q).gravity_torque * self.problem.scale
         self.unit = float(np.linalg.norm(gravity)) or 1.0
         self.penalty = penalty
 
@@ -132,7 +134,7 @@ class Fit:
         J = np.zeros((S, WIDTH, *torque.shape))
         slack, J_slack = np.zeros((S, len(torque))), np.zeros((S, WIDTH, len(torque)))
         for i in range(S):
-            z = np.array([*p[i, 0], 1.0, *p[i, 1]])
+            z = between(p[i])
             d, rate = self.Z[i] @ z, self.dZ[i] @ z  # (N, 3), (N, n, 3)
             length = np.maximum(np.linalg.norm(d, axis=1), 1e-9)
             power = np.einsum("ni,nji->nj", d, rate)
@@ -166,7 +168,7 @@ class Fit:
 
     def _all_ends(self, p: Array) -> Array:
         """(all springs, 2, 3) attachments, those of other springs as they are."""
-        ends = np.array([(s.p_a, s.p_b) for s in self.mechanism.springs])
+        ends = np.array([(s.p_a, s.p_b) for s in lines(self.mechanism, FREE_LENGTHS)])
         ends[[self.mechanism.springs.index(spring) for spring in self.springs]] = p
         return ends
 
@@ -180,8 +182,9 @@ class Fit:
 
     @staticmethod
     def _by_u(by_z: Array, inner: Array) -> Array:
-        """(..., 7) derivatives by z -> (..., 6) by u_a and u_b."""
-        return np.concatenate([by_z[..., :3] @ inner[0], by_z[..., 4:] @ inner[1]], axis=-1)
+        """Derivatives by z -> (..., 6) by u_a and u_b."""
+        by_u = at_ends(by_z)[..., None, :] @ inner
+        return by_u.reshape(*by_z.shape[:-1], -1)
 
 
 def _diagonal(J: Array) -> Array:

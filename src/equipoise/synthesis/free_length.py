@@ -20,11 +20,12 @@ import numpy as np
 from ..balance import Balance, check
 from ..clearance import Clearance, Room
 from ..clearance import clearance as judge_room
+from ..elements import lines
 from ..errors import Fault, InfeasibleError, InputError, nearest
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..validate import MAX_SAMPLES, whole_number
-from .fit import Fit
+from .fit import FREE_LENGTHS, Fit
 from .problem import Region
 
 ROUNDS = 8  # of adding the poses with too little room
@@ -60,9 +61,11 @@ class Ordinary:
 
     def to_dict(self) -> dict[str, Any]:
         """The ``free_length`` part of ``equipoise design --json``."""
-        old = {s.name: (s, use) for s, use in zip(self.ideal.mechanism.springs, self.ideal.use, strict=True)}
+        old = {
+            s.name: (s, use) for s, use in zip(lines(self.ideal.mechanism, FREE_LENGTHS), self.ideal.use, strict=True)
+        }
         springs = []
-        for spring, use in zip(self.mechanism.springs, self.balance.use, strict=True):
+        for spring, use in zip(lines(self.mechanism, FREE_LENGTHS), self.balance.use, strict=True):
             before, before_use = old[spring.name]
             bought = self.free_length.get(spring.name, 0.0)
             springs.append(
@@ -120,7 +123,7 @@ def ordinary(
     whole_number("poses", poses, 1, MAX_SAMPLES)
     q = sample(Tree.of(mechanism), poses, seed)
     plain = mechanism.with_springs(
-        replace(s, free_length=lengths.get(s.name, s.free_length)) for s in mechanism.springs
+        replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
     )
 
     def fitted(room: Room | None) -> Mechanism:
@@ -151,7 +154,7 @@ def _lengths(mechanism: Mechanism, given: float | Mapping[str, float] | None) ->
     if not names:
         raise InputError(f"mechanism '{mechanism.name}' has no springs that could have a free length")
     if given is None:
-        return {spring.name: spring.free_length for spring in mechanism.springs}
+        return {spring.name: spring.free_length for spring in lines(mechanism, FREE_LENGTHS)}
     lengths = dict(given) if isinstance(given, Mapping) else dict.fromkeys(names, float(given))
     for name, value in lengths.items():
         if name not in names:

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError, nearest
+from .options import Number
 
-Value = float | Sequence[float]
+Value = Number | Sequence[Number]
 Given = Value | Mapping[str, Value] | None
 """One value for all links, or link -> value with the value for all others under "*"."""
 
@@ -39,9 +40,9 @@ def vectors(option: str, given: Given, names: Sequence[str]) -> dict[str, Array]
     """The point (3,) [m] for each link that has one."""
     found = {}
     for name, value in _each(option, given, names).items():
-        if isinstance(value, (int, float)) or len(value) != 3 or not np.isfinite(value).all():
+        if isinstance(value, (int, float)) or len(value) != 3 or not np.isfinite(point := np.array(value, float)).all():
             raise InputError(Fault((option, name), f"must be three lengths x,y,z [m] in its frame, found {value}"))
-        found[name] = np.array(value, float)
+        found[name] = point
     return found
 
 

@@ -3,34 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass
 
 from ..mechanism import Mechanism
 from .design import Design
+from .options import MethodOptions, Parameter
 
-Kind = Literal[
-    "length", "angle", "mass", "stiffness", "torque", "number", "share", "whole", "text", "names", "pairs", "flag"
-]
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One free parameter of a method, as ``--set NAME=VALUE`` takes it.
-
-    Attributes:
-        kind: a dimension of `units.SI_UNITS`, or what else the text stands for.
-        choices: the valid texts, where there is a list of them.
-        each: may also be given for one body, ``NAME.BODY=VALUE``; the method gets a mapping then, with the value for
-            all other bodies, if there is one, under "*".
-        many: ``VALUE,VALUE,...``; the method gets a list.
-    """
-
-    kind: Kind
-    help: str
-    choices: tuple[str, ...] = ()
-    each: bool = False
-    many: bool = False
+__all__ = ["Method", "Parameter"]
 
 
 @dataclass(frozen=True)
@@ -39,8 +18,8 @@ class Method:
 
     Attributes:
         applies: mechanism -> the reasons why it does not apply, empty when it does.
+        run: ``run(mechanism, **options)``, with the fields of the type `options` by name.
         exact: whether it has formulas for exact balance, instead of an objective and a bound.
-        run: ``run(mechanism, **options)``; every parameter is one of its options.
     """
 
     name: str
@@ -48,5 +27,10 @@ class Method:
     source: str
     applies: Callable[[Mechanism], list[str]]
     run: Callable[..., Design]
-    parameters: dict[str, Parameter] = field(default_factory=dict)
+    options: type[MethodOptions]
     exact: bool = True
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """The options that the command line takes by ``--set``."""
+        return self.options.parameters()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from inspect import signature
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Literal, ParamSpec, Protocol, cast, overload
 
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..mechanism import Mechanism
 from . import convex
 from .bevel import method as bevel
+from .convex import ConvexOptions
 from .delta import method as delta
 from .design import Design
 from .method import Method
@@ -26,29 +27,87 @@ _MODULES = (
 )
 METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in _MODULES}
 
+C = ParamSpec("C")  # the options of each method
+B = ParamSpec("B")
+P = ParamSpec("P")
+N = ParamSpec("N")
+S = ParamSpec("S")
+D = ParamSpec("D")
 
+
+class _ByMethod(Protocol[C, B, P, N, S, D]):
+    """What editors and type checkers know of `design`: for each method the options of its type."""
+
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["convex"] = "convex", *args: C.args, **options: C.kwargs
+    ) -> Design: ...
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["pseudobase"], *args: B.args, **options: B.kwargs
+    ) -> Design: ...
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["planar"], *args: P.args, **options: P.kwargs
+    ) -> Design: ...
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["no-auxiliary"], *args: N.args, **options: N.kwargs
+    ) -> Design: ...
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["bevel"], *args: S.args, **options: S.kwargs
+    ) -> Design: ...
+    @overload
+    def __call__(
+        self, mechanism: Mechanism, method: Literal["delta"], *args: D.args, **options: D.kwargs
+    ) -> Design: ...
+
+
+def _typed(
+    convex: Callable[C, Any],
+    pseudobase: Callable[B, Any],
+    planar: Callable[P, Any],
+    no_auxiliary: Callable[N, Any],
+    bevel: Callable[S, Any],
+    delta: Callable[D, Any],
+) -> Callable[[Callable[..., Design]], _ByMethod[C, B, P, N, S, D]]:
+    """Decorate `design` with the types of all methods' options; at run time it stays as it is."""
+    return lambda function: cast("_ByMethod[C, B, P, N, S, D]", function)
+
+
+def by_name(mechanism: Mechanism, method: str, **options: Any) -> Design:
+    """`design` by a method whose name is not known before the program runs."""
+    if method not in METHODS:
+        raise InputError(Fault(("method",), f"there is no method {nearest(method, METHODS)}", tuple(METHODS)))
+    chosen = METHODS[method]
+    valid = chosen.options.names()
+    for name in options:
+        if name not in valid:
+            raise InputError(Fault((name,), f"method '{method}' has no such option", valid))
+    reasons = chosen.applies(mechanism)
+    if reasons:
+        raise UnsupportedError(f"method '{method}' does not apply to '{mechanism.name}': {'; '.join(reasons)}")
+    return chosen.run(mechanism, **options)
+
+
+@_typed(
+    ConvexOptions,
+    pseudobase.PseudobaseOptions,
+    planar.PlanarOptions,
+    no_auxiliary.NoAuxiliaryOptions,
+    bevel.BevelOptions,
+    delta.DeltaOptions,
+)
 def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
     """Design springs for a mechanism.
 
     Args:
-        method: a key of `METHODS`; options: that method's own, see its function.
+        method: a key of `METHODS`; options: that method's own, see its type, such as `ConvexOptions`.
 
     Raises:
         InputError: no such method, or a bad option.
         UnsupportedError: the method does not apply; the message says why.
         InfeasibleError: what was asked for does not exist.
     """
-    if method not in METHODS:
-        raise InputError(Fault(("method",), f"there is no method {nearest(method, METHODS)}", tuple(METHODS)))
-    run = METHODS[method].run
-    if "progress" not in signature(run).parameters:  # quick work reports none
-        options.pop("progress", None)
-    own = [name for name, p in signature(run).parameters.items() if p.kind is not p.VAR_KEYWORD and name != "mechanism"]
-    valid = tuple(dict.fromkeys([*own, *METHODS[method].parameters]))
-    for name in options:
-        if name not in valid:
-            raise InputError(Fault((name,), f"method '{method}' has no such option", valid))
-    reasons = METHODS[method].applies(mechanism)
-    if reasons:
-        raise UnsupportedError(f"method '{method}' does not apply to '{mechanism.name}': {'; '.join(reasons)}")
-    return run(mechanism, **options)
+    return by_name(mechanism, method, **options)

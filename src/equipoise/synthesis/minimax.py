@@ -13,8 +13,8 @@ import numpy as np
 from ..arrays import Array
 from ..kinematics import Tree, sample
 from .bound import Bound, least_peak
-from .gram import Gram, svec, torque_rows
-from .polish import Springs, jacobian, residual
+from .gram import Gram, torque_rows
+from .polish import Parts, jacobian, residual
 
 FIRST = 600  # rows (pose and coordinate) of the first round
 CUTS = 100  # rows added per round
@@ -26,11 +26,11 @@ CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of th
 class Peak:
     """The torques of a problem at random poses, one row per pose and coordinate.
 
-    Every torque is linear in the same few numbers ``w = sum_p <Q_p, N_p>`` as the mean square, so a row is short.
+    Every torque is linear in the same few numbers ``w = gram.times(x)`` as the mean square, so a row is short.
 
     Attributes:
         L: (rows, len(w)), load: (rows,): the torque is ``L w + load``, as a share of `unbalanced`.
-        unbalanced: [N m] the largest torque without springs.
+        unbalanced: [N m] the largest torque without any parts.
     """
 
     gram: Gram
@@ -42,44 +42,42 @@ class Peak:
     def of(gram: Gram) -> Peak:
         """The rows over random poses inside the joint ranges."""
         problem = gram.problem
-        rows = svec(gram.Q).transpose(1, 0, 2).reshape(len(gram.d), -1)
-        to_w = np.linalg.pinv(rows)
+        to_w = np.linalg.pinv(np.concatenate(gram.columns, axis=1))
         L, load = [], []
-        for T, torque, _ in torque_rows(problem, sample(Tree.of(problem.mechanism), problem.count, problem.seed)):
-            L.append((T @ to_w * problem.weights[:, None]).reshape(-1, len(rows)))
-            load.append((torque * problem.weights).ravel())
+        q = sample(Tree.of(problem.judged), problem.count, problem.seed)
+        for T, torque, _ in torque_rows(problem, gram.blocks, q):
+            L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(gram.d)))
+            load.append((torque * problem.scale).ravel())
         every = np.concatenate(load)
         unit = float(np.abs(every).max()) or 1.0
         return Peak(gram, np.concatenate(L) / unit, every / unit, unit)
 
-    def torque(self, springs: Springs) -> Array:
-        """(rows,) torque with a spring set (batch of 1)."""
-        return self.L @ (residual(self.gram, springs)[0] - self.gram.d) + self.load
+    def torque(self, parts: Parts) -> Array:
+        """(rows,) torque with a set of parts (batch of 1)."""
+        return self.L @ (residual(self.gram, parts)[0] - self.gram.d) + self.load
 
     def bound(self) -> Bound:
-        """The least peak that any springs on the pairs can leave at these poses."""
+        """The least peak that any parts of the blocks can leave at these poses."""
         chosen = np.zeros(len(self.load), bool)
         chosen[np.random.default_rng(0).permutation(len(self.load))[:FIRST]] = True
         chosen[np.argsort(-np.abs(self.load))[:CUTS]] = True
         best = least_peak(self.gram, self.L[chosen], self.load[chosen])
         for _ in range(ROUNDS):
-            w = np.einsum("prij,pij->r", self.gram.Q, best.N)
-            torque = np.abs(self.L @ w + self.load)
+            torque = np.abs(self.L @ self.gram.times(best.x) + self.load)
             if torque.max() <= best.value * (1 + CLOSE) + 1e-9:
                 break
             chosen[np.argsort(-torque)[:CUTS]] = True
             best = least_peak(self.gram, self.L[chosen], self.load[chosen])
         return best
 
-    def polish(self, start: Springs) -> tuple[Springs, float]:
-        """Lower the peak of one spring set (batch of 1) under the true constraints: a sequence of linear programs.
+    def polish(self, start: Parts) -> tuple[Parts, float]:
+        """Lower the peak of one set of parts (batch of 1) under the true constraints: a sequence of linear programs.
 
         Each program minimises the linearised peak within a trust region; a step that does not lower the true peak
         shrinks the region.
         """
         from scipy.optimize import linprog
 
-        is_box = self.gram.box[start.pair]
         now, trust = start, 0.3
         tau = self.torque(now)
         value = float(np.abs(tau).max())
@@ -88,21 +86,20 @@ class Peak:
             if trust < 1e-7:
                 break
             chosen[np.argsort(-np.abs(tau))[:CUTS]] = True
-            J = self.L[chosen] @ jacobian(self.gram, now)[0]
+            slopes = jacobian(self.gram, now)[0]  # (parts, 1 + shape, len(w))
+            J = self.L[chosen] @ slopes.reshape(-1, slopes.shape[-1]).T
             one = np.ones((len(J), 1))
-            lower, upper = np.full(J.shape[1], -trust), np.full(J.shape[1], trust)
-            u = now.u[0].reshape(-1)
-            places = (7 * np.arange(now.k.shape[1])[:, None] + np.arange(1, 7)).ravel()
-            lower[places], upper[places] = np.maximum(-trust, -1 - u), np.minimum(trust, 1 - u)
+            lower, upper = np.full(slopes.shape[:2], -trust), np.full(slopes.shape[:2], trust)
+            lower[:, 1:], upper[:, 1:] = np.maximum(-trust, -1 - now.u[0]), np.minimum(trust, 1 - now.u[0])
             program = linprog(
                 np.append(np.zeros(J.shape[1]), 1.0),
                 np.vstack([np.hstack([J, -one]), np.hstack([-J, -one])]),
                 np.concatenate([-tau[chosen], tau[chosen]]),
-                bounds=[*zip(lower, upper, strict=True), (0, None)],
+                bounds=[*zip(lower.ravel(), upper.ravel(), strict=True), (0, None)],
             )
             if program.x is None:
                 break
-            trial = now.moved(program.x[:-1].reshape(1, -1, 7), is_box)
+            trial = now.moved(self.gram, program.x[:-1].reshape(1, *lower.shape))
             tau_trial = self.torque(trial)
             new = float(np.abs(tau_trial).max())
             if new < value:

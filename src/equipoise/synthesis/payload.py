@@ -14,12 +14,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..balance import check
+from ..elements import Element
 from ..errors import Fault, InputError, nearest
 from ..io.text import Names
 from ..mechanism import Mechanism, PointMass
-from ..spring import Spring
 from .bevel.shoulder import Shoulder
 from .given import number, vectors
+from .options import Number
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Payload:
     place: Array
 
     @staticmethod
-    def of(shoulder: Shoulder, masses: Sequence[float] | None, place: Sequence[float] | None) -> Payload:
+    def of(shoulder: Shoulder, masses: Sequence[Number] | None, place: Sequence[Number] | None) -> Payload:
         """One mass or a range, at a point of the pitch link or at its mass centre.
 
         Raises:
@@ -78,13 +79,13 @@ class Payload:
         name = Names(point.name for point in mechanism.masses).new("payload")
         return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
 
-    def residual(self, mechanism: Mechanism, springs: Sequence[Spring]) -> dict[str, float]:
+    def residual(self, mechanism: Mechanism, springs: Sequence[Element]) -> dict[str, float]:
         """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
         low, high = (check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high))
         return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
 
-def _range(masses: Sequence[float]) -> tuple[float, float]:
+def _range(masses: Sequence[Number]) -> tuple[float, float]:
     if len(masses) not in (1, 2):
         raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
     low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))

@@ -1,88 +1,114 @@
-"""Local improvement of few springs under the true constraints: many starts at once.
+"""Local improvement of few parts under the true constraints: many starts at once.
 
 A projected Levenberg-Marquardt method on the Gram form, batched over starts in plain numpy: the problems are tiny
 (about 40 residuals, 7 unknowns a spring) and there are thousands of starts, so that a library call per start would
-spend its time in overhead. Unknowns per spring: log stiffness, and both attachments in their regions' coordinates.
+spend its time in overhead. Unknowns per part: the logarithm of its amount, and its shape.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, Booleans, Integers
+from .blocks import Block
 from .gram import Gram
 
 ITERATIONS = 150
 STALL = 1e-13  # residual norm (share of the unbalanced torque) that cannot be improved upon in double precision
-LOG_RANGE = 14.0  # stiffness within e^+-14 of its scale
+LOG_RANGE = 14.0  # an amount stays within e^+-14 of where it starts
 
 
 @dataclass(frozen=True)
-class Springs:
-    """A batch of spring sets: stiffness `k` (batch, springs) [N/m] and attachments `u` (batch, springs, 2, 3).
+class Parts:
+    """A batch of sets of parts.
 
-    `u` is in the regions' own coordinates (unit ball or box); `pair` (batch, springs) is the number of the body pair.
+    Attributes:
+        block: (batch, parts) the number of the block that each belongs to.
+        k: (batch, parts) its amount: of a spring the stiffness [N/m].
+        u: (batch, parts, shape) its shape, in [-1, 1]; zero beyond the coordinates that its block has.
     """
 
-    pair: Integers
+    block: Integers
     k: Array
     u: Array
+
+    @staticmethod
+    def at(gram: Gram, block: Integers, k: Array, u: Array) -> Parts:
+        """Parts with the possible shapes nearest to `u`."""
+        u = u.copy()
+        for own, at, _ in by_block(gram, block):
+            u[at, : own.shape] = own.project(u[at, : own.shape])
+            u[at, own.shape :] = 0.0
+        return Parts(block, k, u)
 
     def __len__(self) -> int:
         return len(self.k)
 
-    def __getitem__(self, chosen: Integers | slice) -> Springs:
-        return Springs(self.pair[chosen], self.k[chosen], self.u[chosen])
+    def __getitem__(self, chosen: Integers | slice) -> Parts:
+        return Parts(self.block[chosen], self.k[chosen], self.u[chosen])
 
-    @property
-    def y(self) -> Array:
-        """(batch, springs, 7): [u_a; 1; u_b], so that a spring's moment matrix is k y y'."""
-        one = np.ones((*self.k.shape, 1))
-        return np.concatenate([self.u[:, :, 0], one, self.u[:, :, 1]], axis=-1)
+    def without(self, i: int) -> Parts:
+        """The same without the i-th part of every set."""
+        rest = [j for j in range(self.k.shape[1]) if j != i]
+        return Parts(self.block[:, rest], self.k[:, rest], self.u[:, rest])
 
-    def moved(self, step: Array, is_box: Booleans) -> Springs:
-        """The sets after a `step` (batch, springs, 7): log stiffness, then both attachments, back into the regions."""
-        u = self.u + step[..., 1:].reshape(self.u.shape)
-        return Springs(self.pair, self.k * np.exp(step[..., 0]), project(u, is_box))
+    def moved(self, gram: Gram, step: Array) -> Parts:
+        """The sets after a `step` (batch, parts, 1 + shape): log amount, then shape, back to where it is possible."""
+        return Parts.at(gram, self.block, self.k * np.exp(step[..., 0]), self.u + step[..., 1:])
 
-    def store(self, gram: Gram) -> Array:
-        """(batch,) mean stored energy [J]."""
-        return np.einsum("bs,bsi,bsij,bsj->b", self.k, self.y, gram.store[self.pair], self.y)
+    def cost(self, gram: Gram) -> Array:
+        """(batch,) what equal designs should have little of: mean stored energy, as a rule [J]."""
+        each = np.empty(self.k.shape)
+        for own, at, number in by_block(gram, self.block):
+            each[at] = own.part(self.u[at, : own.shape]) @ gram.cost[number]
+        return (self.k * each).sum(axis=1)
 
 
-def residual(gram: Gram, springs: Springs) -> Array:
+def shape(gram: Gram) -> int:
+    """The most coordinates that the shape of any part has."""
+    return max(block.shape for block in gram.blocks)
+
+
+def by_block(gram: Gram, block: Integers) -> Iterator[tuple[Block, Booleans, int]]:
+    """Each block that occurs, where it does, and its number."""
+    for number in np.unique(block).tolist():
+        yield gram.blocks[number], block == number, number
+
+
+def residual(gram: Gram, parts: Parts) -> Array:
     """(batch, rows) residual of the Gram form, as a share of the unbalanced torque, `rest` not included."""
-    return (unit_torque(gram, springs) @ springs.k[..., None])[..., 0] + gram.d
+    return np.einsum("bs,bsr->br", parts.k, unit_torque(gram, parts)) + gram.d
 
 
-def unit_torque(gram: Gram, springs: Springs) -> Array:
-    """(batch, rows, springs): what each spring does per unit of stiffness."""
-    y = springs.y
-    Qy = (gram.Q[springs.pair] @ y[:, :, None, :, None])[..., 0]
-    return np.swapaxes((Qy @ y[..., None])[..., 0], 1, 2)
+def unit_torque(gram: Gram, parts: Parts) -> Array:
+    """(batch, parts, rows): what one unit of each part does."""
+    out = np.empty((*parts.k.shape, len(gram.d)))
+    for own, at, number in by_block(gram, parts.block):
+        out[at] = own.part(parts.u[at, : own.shape]) @ gram.columns[number].T
+    return out
 
 
-def best_stiffness(gram: Gram, springs: Springs) -> Springs:
-    """The same attachments with the stiffnesses that leave least (each at least a trifle of the common scale)."""
-    A = unit_torque(gram, springs)
-    H = np.swapaxes(A, 1, 2) @ A
+def best_amounts(gram: Gram, parts: Parts) -> Parts:
+    """The same shapes in the amounts that leave least (each at least a trifle of the common scale)."""
+    A = unit_torque(gram, parts)
+    H = A @ np.swapaxes(A, 1, 2)
     ridge = 1e-9 * np.trace(H, axis1=1, axis2=2)[:, None, None] * np.eye(H.shape[1]) + 1e-300 * np.eye(H.shape[1])
-    k = -np.linalg.solve(H + ridge, np.swapaxes(A, 1, 2) @ gram.d[:, None])[..., 0]
+    k = -np.linalg.solve(H + ridge, A @ gram.d[:, None])[..., 0]
     floor = 0.05 * np.abs(k).max(axis=1, keepdims=True)
-    return Springs(springs.pair, np.maximum(k, np.maximum(floor, 1e-9)), springs.u)
+    return Parts(parts.block, np.maximum(k, np.maximum(floor, 1e-9)), parts.u)
 
 
-def polish(gram: Gram, start: Springs, iterations: int = ITERATIONS) -> tuple[Springs, Array]:
-    """Improve every spring set of a batch.
+def polish(gram: Gram, start: Parts, iterations: int = ITERATIONS) -> tuple[Parts, Array]:
+    """Improve every set of a batch.
 
     Returns:
         The improved sets and their root mean square torque (batch,), as a share of the unbalanced one.
     """
-    is_box = gram.box[start.pair]  # (batch, springs, 2)
     reference = np.log(start.k)
-    now, damping = Springs(start.pair, start.k.copy(), start.u.copy()), np.full(len(start), 1e-3)
+    now, damping = Parts(start.block, start.k.copy(), start.u.copy()), np.full(len(start), 1e-3)
     r = residual(gram, now)
     cost = np.einsum("br,br->b", r, r)
     alive = np.ones(len(start), bool)
@@ -91,7 +117,7 @@ def polish(gram: Gram, start: Springs, iterations: int = ITERATIONS) -> tuple[Sp
         batch = np.flatnonzero(alive)
         if not len(batch):
             break
-        trial = _step(gram, now[batch], r[batch], damping[batch], is_box[batch], reference[batch])
+        trial = _step(gram, now[batch], r[batch], damping[batch], reference[batch])
         r_trial = residual(gram, trial)
         cost_trial = np.einsum("br,br->b", r_trial, r_trial)
         better = cost_trial < cost[batch]
@@ -105,47 +131,37 @@ def polish(gram: Gram, start: Springs, iterations: int = ITERATIONS) -> tuple[Sp
     return now, np.sqrt(cost + gram.rest**2)
 
 
-def _step(gram: Gram, x: Springs, r: Array, damping: Array, is_box: Booleans, reference: Array) -> Springs:
-    """One damped Gauss-Newton step, projected onto the regions, with outward directions at the boundary frozen."""
-    B, S = x.k.shape
+def _step(gram: Gram, x: Parts, r: Array, damping: Array, reference: Array) -> Parts:
+    """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
     J = jacobian(gram, x)
-    g = np.einsum("bri,br->bi", J, r)
-    free = _free(x.u, g.reshape(B, S, 7)[:, :, 1:].reshape(B, S, 2, 3), is_box)
-    J = (J.reshape(B, -1, S, 7).transpose(0, 2, 1, 3) @ free).transpose(0, 2, 1, 3).reshape(B, -1, 7 * S)
-    H, g = np.swapaxes(J, 1, 2) @ J, np.einsum("bri,br->bi", J, r)
+    B, S, width, _ = J.shape
+    free = _free(gram, x, J @ r[:, None, :, None])
+    J = (free @ J).reshape(B, S * width, -1)
+    H, g = J @ np.swapaxes(J, 1, 2), J @ r[:, :, None]
     diagonal = np.einsum("bii->bi", H)  # a view: the damping goes onto H itself
     diagonal += damping[:, None] * (diagonal + 1e-6 * diagonal.max(axis=1, keepdims=True) + 1e-30)
-    step = (free @ -np.linalg.solve(H, g[..., None]).reshape(B, S, 7, 1))[..., 0]
+    step = (free @ -np.linalg.solve(H, g).reshape(B, S, width, 1))[..., 0]
     step[..., 1:] = np.clip(step[..., 1:], -1, 1)
     log_k = np.log(x.k)
     step[..., 0] = np.clip(np.clip(step[..., 0], -2, 2), reference - LOG_RANGE - log_k, reference + LOG_RANGE - log_k)
-    return x.moved(step, is_box)
+    return x.moved(gram, step)
 
 
-def jacobian(gram: Gram, x: Springs) -> Array:
-    """(batch, rows, 7 springs) derivative of `residual`: per spring by log stiffness, u_a and u_b."""
-    B, S = x.k.shape
-    Qy = (gram.Q[x.pair] @ x.y[:, :, None, :, None])[..., 0]
-    by_u = 2 * x.k[:, :, None, None] * Qy[..., [0, 1, 2, 4, 5, 6]]
-    by_k = x.k[:, :, None] * (Qy @ x.y[..., None])[..., 0]
-    return np.concatenate([by_k[..., None], by_u], axis=-1).transpose(0, 2, 1, 3).reshape(B, -1, 7 * S)
+def jacobian(gram: Gram, x: Parts) -> Array:
+    """(batch, parts, 1 + shape, rows) derivative of `residual`: for each part by its log amount and by its shape."""
+    J = np.zeros((*x.u.shape[:2], 1 + x.u.shape[2], len(gram.d)))
+    for own, at, number in by_block(gram, x.block):
+        u, Q = x.u[at, : own.shape], gram.columns[number].T
+        slopes = own.slopes(u).reshape(-1, own.unknowns) @ Q
+        J[at, 0], J[at, 1 : 1 + own.shape] = own.part(u) @ Q, slopes.reshape(-1, own.shape, len(gram.d))
+    return J * x.k[..., None, None]
 
 
-def project(u: Array, is_box: Booleans) -> Array:
-    """The nearest point of each region: the unit box or the unit ball. u: (..., 3), is_box: (...)."""
-    norm = np.linalg.norm(u, axis=-1, keepdims=True)
-    return np.where(is_box[..., None], np.clip(u, -1, 1), u / np.maximum(norm, 1.0))
-
-
-def _free(u: Array, gradient: Array, is_box: Booleans) -> Array:
-    """(B, S, 7, 7) projectors onto the directions a step may take: not out of a region through its boundary."""
-    B, S = u.shape[:2]
-    out_of_box = (np.abs(u) >= 1 - 1e-12) & (gradient * u < 0)
-    at_rim = (np.linalg.norm(u, axis=-1) >= 1 - 1e-12) & (np.einsum("...i,...i", gradient, u) < 0)
-    keep_box = np.where(out_of_box, 0.0, 1.0)[..., None] * np.eye(3)
-    keep_ball = np.eye(3) - np.where(at_rim[..., None, None], u[..., :, None] * u[..., None, :], 0.0)
-    keep = np.where(is_box[..., None, None], keep_box, keep_ball)
-    free = np.zeros((B, S, 7, 7))
+def _free(gram: Gram, x: Parts, gradient: Array) -> Array:
+    """(B, S, 1 + shape, 1 + shape) projectors onto the directions a step may take."""
+    free = np.zeros((*gradient.shape[:3], gradient.shape[2]))
     free[..., 0, 0] = 1.0
-    free[..., 1:4, 1:4], free[..., 4:, 4:] = keep[:, :, 0], keep[:, :, 1]
+    for own, at, _ in by_block(gram, x.block):
+        within = slice(1, 1 + own.shape)
+        free[at, within, within] = own.free(x.u[at, : own.shape], gradient[at, within, 0])
     return free

@@ -1,14 +1,15 @@
-"""What may be changed and what for: the body pairs, where springs may be attached, and the goal.
+"""What may be changed and what for: the body pairs, where springs may be attached, the poses, and the goal.
 
-Building a problem is separate from solving it, so that it can be looked at and altered in between.
+Building a problem is separate from solving it, so that it can be looked at and altered in between: a problem is a
+value, and `dataclasses.replace` and its own methods make another one of it, checked again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,184 +18,213 @@ from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
 from ..validate import MAX_SAMPLES, whole_number
+from .blocks import Block
+from .given import number
 from .mounts import Mounts
+from .options import Number, Options, option, takes
+from .region import SHAPES, Region, Shape
+from .spring_block import SpringBlock
+
+__all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
 
 Pair = tuple[str, str]
-Progress = Callable[[str, float], None]  # what is being done, and the share of it that is done
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
-Shape = Literal["ball", "box"]
-SHAPES: tuple[Shape, ...] = ("ball", "box")
-EXTREME = 1e6  # regions so much smaller or larger than the mechanism are beyond double precision
 
 
-@dataclass(frozen=True)
-class Region:
-    """Where a spring may be attached to a body: within `half` of `centre`, in the body's frame [m].
+@dataclass(frozen=True, kw_only=True)
+class ProblemOptions(Options):
+    """What `Problem.of` can be asked for.
 
-    A ball of radius ``half[0]``, or a box of half sides `half`.
+    Attributes:
+        span: without `pairs`, every two bodies at most this many moving joints apart.
+        pairs: the pairs of bodies that may be joined by springs.
+        radius: [m] of every region without one of its own in `regions`; by default from each link's size.
+        shape: of those regions, ball or box.
+        regions: body -> where springs may be attached to it.
+        objective: "rms" (mean square over configurations and joints) or "peak" (the largest torque).
+        joints: the joints or coordinates whose torque counts, all by default; a spherical joint stands for its three.
+        weights: joint or coordinate -> the factor by which its torque counts, 1 where none is given.
+        samples: random poses inside the joint ranges that the goal is judged on; by default exact averages over all
+            configurations where the mechanism allows it, else the workspace's number of samples.
+        seed: of those poses.
+        unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
+        keep: the mechanism's own springs stay and count as a load; else they are replaced.
     """
 
-    centre: tuple[float, float, float]
-    half: tuple[float, float, float]
+    span: int = option(2, "whole", "springs join bodies at most this many moving joints apart (default 2)")
+    pairs: Iterable[Pair] | None = None
+    radius: Number | None = option(None, "length", "of every attachment region (default: from each link's size)")
     shape: Shape = "ball"
-
-    @staticmethod
-    def ball(radius: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
-        """A ball around `centre` [m]."""
-        x, y, z = centre
-        return Region((x, y, z), (radius, radius, radius), "ball")
-
-    @staticmethod
-    def box(half: float | Iterable[float], centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
-        """A box around `centre`, +-`half` along each axis of the body [m]."""
-        hx, hy, hz = [float(half)] * 3 if isinstance(half, (int, float)) else half
-        x, y, z = centre
-        return Region((x, y, z), (hx, hy, hz), "box")
-
-    def times(self, factor: float) -> Region:
-        """The region enlarged about its centre."""
-        hx, hy, hz = (factor * h for h in self.half)
-        return replace(self, half=(hx, hy, hz))
-
-    @property
-    def lift(self) -> Array:
-        """(4, 4) maps the region's own coordinates [u; 1], u in the unit ball or box, to body coordinates [p; 1]."""
-        L = np.diag([*self.half, 1.0])
-        L[:3, 3] = self.centre
-        return L
+    regions: Mapping[str, Region] | None = None
+    objective: Objective = option("rms", "text", "what is minimised (default rms torque)", OBJECTIVES)
+    joints: Iterable[str] | None = option(None, "names", "A,B,...: the joints whose torque counts (default: all)")
+    weights: Mapping[str, float] | None = option(
+        None, "number", "factor by which a joint's torque counts (default 1); BODY is a joint's name", each=True
+    )
+    samples: int | None = option(None, "whole", "random poses to judge on (default: exact averages where possible)")
+    seed: int = option(0, "whole", "of the random poses (default 0)")
+    unlimited: bool = False
+    keep: bool = False
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Choose springs for `mechanism` (its own springs stay and act as a load).
+    """Choose springs for `mechanism`.
 
     Attributes:
-        pairs: the pairs of bodies that may be joined by springs.
-        regions: attachment region of every body named in `pairs`.
-        objective: "rms" (mean square over configurations and joints) or "peak" (the largest torque).
-        joints: the coordinates whose torque counts (all of them when None): the arm of a whole body, for example.
-        samples: random poses inside the joint ranges that the goal is judged on; None takes exact averages over all
-            configurations where the mechanism allows it, else the workspace's number of samples.
-        radius, shape: of the region of any other body [m], where none is given.
+        pairs: the pairs of bodies that may be joined by springs; `span` is set where they come from one.
+        regions: body -> attachment region, where one is given; `attachments` has those of every body in `pairs`.
+        radius, shape: of the other regions [m]; by default from each link's size.
+        beside: other blocks of unknowns than the springs of the pairs.
+        objective, joints, weights, samples, seed, unlimited, keep: see `ProblemOptions`.
+
+    Raises:
+        InputError: an unknown body or joint, a pair of one body, nothing to choose, an option out of range, a region
+            of no size or out of all proportion to the mechanism, loops that cannot be closed.
     """
 
     mechanism: Mechanism
     pairs: tuple[Pair, ...]
-    regions: Mapping[str, Region]
+    regions: Mapping[str, Region] = field(default_factory=dict)
     objective: Objective = "rms"
     joints: tuple[str, ...] | None = None
+    weights: Mapping[str, float] = field(default_factory=dict)
     samples: int | None = None
     seed: int = 0
+    unlimited: bool = False
+    keep: bool = False
     radius: float | None = None
     shape: Shape = "ball"
+    beside: tuple[Block, ...] = ()
+    span: int | None = None
 
     @staticmethod
-    def of(
-        mechanism: Mechanism,
-        *,
-        span: int = 2,
-        pairs: Iterable[Pair] | None = None,
-        radius: float | None = None,
-        shape: Shape = "ball",
-        regions: Mapping[str, Region] | None = None,
-        objective: Objective = "rms",
-        joints: Iterable[str] | None = None,
-        samples: int | None = None,
-        seed: int = 0,
-    ) -> Problem:
-        """The problem with sensible defaults.
+    @takes(ProblemOptions)
+    def of(mechanism: Mechanism, options: ProblemOptions) -> Problem:
+        """The problem with sensible defaults; see `ProblemOptions`, and `Problem` for what it raises."""
+        given = options.of(ProblemOptions)
+        if given["pairs"] is None:
+            whole_number("span", options.span, 1)
+            mounts = Mounts.of(mechanism if options.keep else mechanism.with_springs(()))
+            if len(mounts.bodies) < 2:
+                raise InputError(f"mechanism '{mechanism.name}': there are no two bodies that a spring could join")
+            given["pairs"] = mounts.pairs(options.span)
+        else:
+            given["span"] = None
+        given["regions"], given["weights"] = options.regions or {}, options.weights or {}
+        return Problem(mechanism, **given)
 
-        Args:
-            span: without `pairs`, every two bodies at most this many moving joints apart.
-            radius: [m] of every region without one of its own in `regions`; by default from each link's size.
-            joints: names of joints or coordinates; a spherical joint stands for its three.
-
-        Raises:
-            InputError: an unknown body or joint, a pair of one body, no pair at all, an option out of range.
-            InputError: also loops that cannot be closed.
-        """
-        mounts = Mounts.of(mechanism)
-        whole_number("span", span, 1)
-        whole_number("seed", seed, 0)
-        if samples is not None:
-            whole_number("samples", samples, 1, MAX_SAMPLES)
-        for name, value, valid in (("objective", objective, OBJECTIVES), ("shape", shape, SHAPES)):
+    def __post_init__(self) -> None:
+        whole_number("seed", self.seed, 0)
+        if self.samples is not None:
+            whole_number("samples", self.samples, 1, MAX_SAMPLES)
+        for name, value, valid in (("objective", self.objective, OBJECTIVES), ("shape", self.shape, SHAPES)):
             if value not in valid:
                 raise InputError(Fault((name,), f"unknown {name} {nearest(value, valid)}", valid))
-        if len(mounts.bodies) < 2 and pairs is None:
-            raise InputError(f"mechanism '{mechanism.name}': there are no two bodies that a spring could join")
-        chosen = mounts.pairs(span) if pairs is None else _distinct(_known(mechanism, "pairs", p) for p in pairs)
-        if not chosen:
+        for body in self.regions:
+            _known(self.mechanism, "regions", (body,))
+        self._set("pairs", _distinct(_known(self.mechanism, "pairs", p) for p in self.pairs))
+        if not self.pairs and not self.beside:
             raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
-        given = dict(regions or {})
-        for body in given:
-            _known(mechanism, "regions", (body,))
-        counted = None if joints is None else _coordinates(mechanism, joints)
-        problem = Problem(mechanism, (), given, objective, counted, samples, seed, radius, shape)
-        return problem.with_pairs(chosen)
+        self._set("regions", dict(self.regions))
+        self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
+        self._set("weights", _weights(self.judged, self.weights))
+        reach = Mounts.of(self.judged).reach
+        for name in dict.fromkeys(name for pair in self.pairs for name in pair):
+            self.attachments[name].check(name, reach)
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
 
     def with_pairs(self, pairs: Iterable[Pair]) -> Problem:
-        """The same problem on other pairs; bodies without a region get the default one.
+        """The same problem on other pairs."""
+        return replace(self, pairs=tuple(pairs), span=None)
 
-        Raises:
-            InputError: a region is of no size, or out of all proportion to the mechanism.
-        """
-        mounts, pairs = Mounts.of(self.mechanism), tuple(pairs)
+    def with_regions(self, regions: Mapping[str, Region]) -> Problem:
+        """The same problem with other attachment regions for some bodies."""
+        return replace(self, regions={**self.regions, **regions})
+
+    def with_weights(self, weights: Mapping[str, float]) -> Problem:
+        """The same problem where the torque of these joints or coordinates counts by other factors."""
+        return replace(self, weights={**self.weights, **_weights(self.judged, weights)})
+
+    def with_poses(self, samples: int | None = None, *, seed: int = 0, unlimited: bool = False) -> Problem:
+        """The same problem judged on other poses; see `ProblemOptions`."""
+        return replace(self, samples=samples, seed=seed, unlimited=unlimited)
+
+    def enlarged(self, factor: float) -> Problem:
+        """The same problem with every region enlarged about its centre."""
+        return self.with_regions({name: region.times(factor) for name, region in self.attachments.items()})
+
+    @cached_property
+    def attachments(self) -> Mapping[str, Region]:
+        """The attachment region of every body named in `pairs`, and of the others that one is given for."""
+        mounts = Mounts.of(self.judged)
         make = Region.ball if self.shape == "ball" else Region.box
-        regions = dict(self.regions)
-        for name in dict.fromkeys(name for pair in pairs for name in pair):
-            radius = mounts.default_radius(name) if self.radius is None else self.radius
-            regions.setdefault(name, make(radius))
-            _sized(name, regions[name], mounts.reach)
-        return replace(self, pairs=pairs, regions=regions)
+        found = dict(self.regions)
+        for name in (name for pair in self.pairs for name in pair if name not in found):
+            found[name] = make(mounts.default_radius(name) if self.radius is None else self.radius)
+        return found
+
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        """The unknowns: the springs of each pair, and what is beside them."""
+        regions = self.attachments
+        return (*(SpringBlock(a, b, regions[a], regions[b]) for a, b in self.pairs), *self.beside)
+
+    @cached_property
+    def kept(self) -> Mechanism:
+        """What stays of the mechanism: without the springs that are replaced."""
+        return self.mechanism if self.keep else self.mechanism.with_springs(())
+
+    @cached_property
+    def judged(self) -> Mechanism:
+        """What stays, over the poses that count: without the ranges of revolute joints where they are ignored."""
+        if not self.unlimited:
+            return self.kept
+        joints = (replace(j, range=None) if j.type == "revolute" else j for j in self.kept.joints)
+        return replace(self.kept, joints=tuple(joints))
 
     @property
     def count(self) -> int:
         """The number of random poses where averages are not exact."""
         return self.samples or self.mechanism.workspace.samples
 
-    def enlarged(self, factor: float) -> Problem:
-        """The same problem with every region enlarged about its centre."""
-        return replace(self, regions={name: region.times(factor) for name, region in self.regions.items()})
-
     @cached_property
-    def weights(self) -> Array:
-        """(n,) what each coordinate's torque counts: 1 for an angle; a force counts at the mechanism's reach [m]."""
-        every = np.where(Tree.of(self.mechanism).turns, 1.0, Mounts.of(self.mechanism).reach)
-        counted = [self.joints is None or name in self.joints for name in Tree.of(self.mechanism).coordinates]
-        return np.where(counted, every, 0.0)
+    def scale(self) -> Array:
+        """(n,) what each coordinate's torque counts: 1 for an angle, the mechanism's reach [m] for a slide's force.
 
-    def lift(self, pair: Pair) -> Array:
-        """(7, 7) maps a pair's own coordinates [u_a; 1; u_b] to z = [p_a; 1; p_b]."""
-        a, b = (self.regions[name].lift for name in pair)
-        L = np.zeros((7, 7))
-        L[:4, :4] = a
-        L[4:, 4:], L[4:, 3] = b[:3, :3], b[:3, 3]
-        return L
+        Times its weight, and 0 for those that do not count.
+        """
+        tree = Tree.of(self.judged)
+        every = np.where(tree.turns, 1.0, Mounts.of(self.judged).reach)
+        counted = [self.joints is None or name in self.joints for name in tree.coordinates]
+        weights = [self.weights.get(name, 1.0) for name in tree.coordinates]
+        return np.where(counted, every * weights, 0.0)
 
 
-def _coordinates(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
-    found: list[str] = []
+def _coordinates(mechanism: Mechanism, field: str, name: str) -> list[str]:
     coordinates = Tree.of(mechanism).coordinates
-    for name in joints:
-        own = [c for c in coordinates if name in (c, c.rpartition(".")[0])]
-        if not own:
-            problem = f"no independent joint {nearest(name, coordinates)}"
-            raise InputError(Fault(("joints",), problem, coordinates))
-        found += own
+    own = [c for c in coordinates if name in (c, c.rpartition(".")[0])]
+    if not own:
+        raise InputError(Fault((field,), f"no independent joint {nearest(name, coordinates)}", coordinates))
+    return own
+
+
+def _counted(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
+    found = tuple(dict.fromkeys(c for name in joints for c in _coordinates(mechanism, "joints", name)))
     if not found:
-        raise InputError(Fault(("joints",), "no joint is named", coordinates))
-    return tuple(dict.fromkeys(found))
+        raise InputError(Fault(("joints",), "no joint is named", Tree.of(mechanism).coordinates))
+    return found
 
 
-def _sized(name: str, region: Region, reach: float) -> None:
-    half = np.array(region.half)
-    if not (np.isfinite([*half, *region.centre]).all() and (half >= 0).all() and half.max() > 0):
-        raise InputError(Fault(("regions", name), f"its size must be more than 0 m, found {half.max():g}"))
-    if not reach / EXTREME <= half.max() <= reach * EXTREME:
-        limits = f"{reach / EXTREME:.1g} m and {reach * EXTREME:.1g} m"
-        raise InputError(Fault(("regions", name), f"its size must be between {limits}, found {half.max():g} m"))
+def _weights(mechanism: Mechanism, given: Mapping[str, float]) -> dict[str, float]:
+    return {
+        coordinate: number("weights", value, positive=False)
+        for name, value in given.items()
+        for coordinate in _coordinates(mechanism, "weights", name)
+    }
 
 
 def _distinct(pairs: Iterable[Pair]) -> tuple[Pair, ...]:

@@ -1,6 +1,6 @@
-"""Few springs: which pairs of bodies, and the best springs on them.
+"""Few parts: which blocks, such as pairs of bodies, and the best parts of them, such as springs.
 
-The convex bound of a set of pairs bounds every design on it, so sets are tried in the order of their bounds; on each,
+The convex bound of a set of blocks bounds every design on it, so sets are tried in the order of their bounds; on each,
 many random starts are polished under the true constraints.
 """
 
@@ -13,38 +13,38 @@ from math import comb
 
 import numpy as np
 
+from ..progress import Progress
 from .bound import Bound, least_rms
 from .gram import Gram
-from .polish import STALL, Springs, best_stiffness, polish, project
-from .problem import Progress
+from .polish import STALL, Parts, best_amounts, polish, shape
 
 NOTHING = 1e-11  # share of the unbalanced torque that is only rounding here; the certificate has the last word
 FEASIBLE = 1e-6  # a convex bound below this share is zero within the solver's tolerance
-EXHAUSTIVE = 500  # sets of pairs up to which every one gets its bound
-BEAM = 6  # otherwise only the best so many sets are extended by one more pair
-SETS = 10  # sets of pairs polished for each number of springs
+EXHAUSTIVE = 500  # sets of blocks up to which every one gets its bound
+BEAM = 6  # otherwise only the best so many sets are extended by one more block
+SETS = 10  # sets of blocks polished for each number of parts
 STARTS = 48  # random starts on each; the best quarter is polished to the end
 SHORT = 30  # iterations for all starts
-MORE = 128  # starts where exact springs may exist and were not found, on
-MANY = 200  # sets over the square of the number of springs, which is how their cost grows
+MORE = 128  # starts where an exact design may exist and was not found, on
+MANY = 200  # sets over the square of the number of parts, which is how their cost grows
 NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
-SAME = 1e-6  # relative: a spring that improves less is not needed
+SAME = 1e-6  # relative: a part that improves less is not needed
 CLOSE = 1.001  # times the bound: as good as it
-SPLITS = 6  # ways to distribute the springs over the pairs of a set
+SPLITS = 6  # ways to distribute the parts over the blocks of a set
 
 
 @dataclass(frozen=True)
 class Found:
-    """The best design found with at most `count` springs.
+    """The best design found with at most `count` parts.
 
     Attributes:
-        springs: one set (batch of 1).
+        parts: one set (batch of 1).
         value: root mean square torque as a share of the unbalanced one.
-        bound: no design with `count` springs leaves less; None where not every set of pairs was bounded.
+        bound: no design with `count` parts leaves less; None where not every set of blocks was bounded.
     """
 
     count: int
-    springs: Springs
+    parts: Parts
     value: float
     bound: float | None
 
@@ -56,7 +56,7 @@ class Found:
 
 @dataclass
 class Search:
-    """The search over sets of pairs of one problem. Remembers the bound of every set, and the sets by size."""
+    """The search over sets of blocks of one problem. Remembers the bound of every set, and the sets by size."""
 
     gram: Gram
     seed: int = 0
@@ -64,24 +64,29 @@ class Search:
     bounds: dict[tuple[int, ...], Bound] = field(default_factory=dict)
     ordered: dict[int, tuple[list[tuple[int, ...]], bool]] = field(default_factory=dict)
 
-    def bound(self, pairs: tuple[int, ...]) -> float:
-        """The convex bound of the pairs with these numbers."""
-        if pairs not in self.bounds:
-            self.bounds[pairs] = least_rms(self.gram.on(list(pairs)))
-        return self.bounds[pairs].value
+    def bound(self, blocks: tuple[int, ...]) -> float:
+        """The convex bound of the blocks with these numbers."""
+        if blocks not in self.bounds:
+            self.bounds[blocks] = least_rms(self.gram.on(blocks))
+        return self.bounds[blocks].value
+
+    @property
+    def floor(self) -> float:
+        """The convex bound of all blocks together."""
+        return self.bound(tuple(range(len(self.gram.blocks))))
 
     def sets(self, size: int) -> tuple[list[tuple[int, ...]], bool]:
-        """Sets of `size` pairs, best bound first, and whether every one was looked at."""
-        pairs = range(len(self.gram.problem.pairs))
-        size = min(size, len(pairs))
+        """Sets of `size` blocks, best bound first, and whether every one was looked at."""
+        blocks = range(len(self.gram.blocks))
+        size = min(size, len(blocks))
         if size in self.ordered:
             return self.ordered[size]
-        every = comb(len(pairs), size) <= EXHAUSTIVE
+        every = comb(len(blocks), size) <= EXHAUSTIVE
         if every:
-            candidates = list(combinations(pairs, size))
+            candidates = list(combinations(blocks, size))
         else:
             roots = self.sets(size - 1)[0][:BEAM]
-            candidates = sorted({tuple(sorted({*root, p})) for root in roots for p in pairs if p not in root})
+            candidates = sorted({tuple(sorted({*root, b})) for root in roots for b in blocks if b not in root})
         for i, candidate in enumerate(candidates):
             self.bound(candidate)
             self._report(f"bounding sets of pairs, {size} at a time", (i + 1) / len(candidates))
@@ -89,14 +94,14 @@ class Search:
         return self.ordered[size]
 
     def best(self, count: int) -> Found:
-        """The best design found with at most `count` springs."""
+        """The best design found with at most `count` parts."""
         sets, every = self.sets(count)
         bound = self.bound(sets[0]) if every else None
-        smaller = [s for size in range(1, min(count, len(self.gram.problem.pairs))) for s in self.sets(size)[0][:SETS]]
+        smaller = [s for size in range(1, min(count, len(self.gram.blocks))) for s in self.sets(size)[0][:SETS]]
         promising = sorted([*sets[:SETS], *smaller], key=lambda c: (max(self.bound(c), FEASIBLE), len(c)))[: 2 * SETS]
         best = self._try(promising, count, bound, STARTS)
         if not best.exact:
-            # exact springs may exist on any set whose bound is zero, and small regions hide them from most starts
+            # exact designs may exist on any set whose bound is zero, and small regions hide them from most starts
             tried = [s for size in range(1, count + 1) for s in self.sets(size)[0]]
             for chosen in [s for s in dict.fromkeys(tried) if self.bound(s) < FEASIBLE][: MANY // count**2 + 1]:
                 found = self._polished(chosen, count, bound, MORE)
@@ -107,8 +112,8 @@ class Search:
         return best
 
     def front(self, most: int) -> Iterator[Found]:
-        """The best designs found with at most 1, 2, ... springs, until exact, or as good as the bound, or `most`."""
-        floor = self.bound(tuple(range(len(self.gram.problem.pairs))))
+        """The best designs found with at most 1, 2, ... parts, until exact, or as good as the bound, or `most`."""
+        floor = self.floor
         last = self.best(1)
         yield last
         while last.count < most and not last.exact and (floor <= FEASIBLE or last.value > CLOSE * floor):
@@ -118,14 +123,11 @@ class Search:
             yield last
 
     def pruned(self, found: Found) -> Found:
-        """The same without the springs that are not needed: none can go without a loss."""
-        for i in range(found.springs.k.shape[1]):
-            if found.springs.k.shape[1] == 1:
-                break
-            rest = [j for j in range(found.springs.k.shape[1]) if j != i]
-            fewer = Springs(found.springs.pair[:, rest], found.springs.k[:, rest], found.springs.u[:, rest])
-            springs, value = polish(self.gram, fewer)
-            less = replace(found, springs=springs, value=float(value[0]))
+        """The same without the parts that are not needed: none can go without a loss."""
+        count = found.parts.k.shape[1]
+        for i in range(count if count > 1 else 0):
+            parts, value = polish(self.gram, found.parts.without(i))
+            less = replace(found, parts=parts, value=float(value[0]))
             if less.exact if found.exact else less.value <= found.value * (1 + SAME):
                 return self.pruned(less)
         return found
@@ -141,23 +143,22 @@ class Search:
         return best
 
     def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None, starts: int) -> Found:
-        gram = self.gram.on(list(chosen))
+        gram = self.gram.on(chosen)
         rng = np.random.default_rng([self.seed, count, *chosen])
         spare = count - len(chosen)
         splits = list(islice(combinations_with_replacement(range(len(chosen)), spare), SPLITS))
         local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], starts, axis=0)
-        u = project(rng.uniform(-1, 1, (*local.shape, 2, 3)), gram.box[local])
-        start = best_stiffness(gram, Springs(local, np.ones(local.shape), u))
-        springs, value = polish(gram, start, SHORT)
-        springs, value = polish(gram, springs[np.argsort(value)[: len(springs) // 4 + 8]])
+        start = Parts.at(gram, local, np.ones(local.shape), rng.uniform(-1, 1, (*local.shape, shape(gram))))
+        parts, value = polish(gram, best_amounts(gram, start), SHORT)
+        parts, value = polish(gram, parts[np.argsort(value)[: len(parts) // 4 + 8]])
         good = np.flatnonzero(value <= max(value.min() * (1 + NEARLY), 10 * STALL))
-        winner = good[springs.store(gram)[good].argmin()]  # among equals, the one that stores least
-        best = springs[winner : winner + 1]
-        return Found(count, Springs(np.array(chosen)[best.pair], best.k, best.u), float(value[winner]), bound)
+        winner = good[parts.cost(gram)[good].argmin()]  # among equals, the one that stores least
+        best = parts[winner : winner + 1]
+        return Found(count, replace(best, block=np.array(chosen)[best.block]), float(value[winner]), bound)
 
     def _better(self, one: Found, other: Found) -> bool:
         if one.exact and other.exact:
-            return bool(one.springs.store(self.gram)[0] < other.springs.store(self.gram)[0])
+            return bool(one.parts.cost(self.gram)[0] < other.parts.cost(self.gram)[0])
         return one.value < other.value
 
     def _report(self, what: str, done: float) -> None:

@@ -13,16 +13,17 @@ from numpy.typing import ArrayLike
 from .._version import __version__
 from ..arrays import Array
 from ..balance import Balance, check
-from ..energy.potential import Potential, State
+from ..elements import Element, Spring, Vec3
+from ..energy.evaluate import Potential
+from ..energy.reference import State
 from ..kinematics import Tree, sample
 from ..kinematics.sampling import inside
 from ..mechanism import Mechanism, PointMass
+from ..progress import Progress
 from ..report.poses import View, choose
 from ..report.skeleton import Skeleton
-from ..spring import Spring, Vec3
-from ..synthesis import Design, Region, design
+from ..synthesis import Design, Problem, Region, solve
 from ..synthesis.mounts import Mounts
-from ..synthesis.problem import Progress
 
 POSES, CLOSED = 256, 48  # random poses of the live residual; closing loops takes longer
 TRAIL = 250  # poses of the last motion
@@ -97,7 +98,7 @@ class Model:
         return True
 
     def change(self, number: int, **values: Any) -> None:
-        """Give a spring other values: stiffness, p_a, p_b, free_length.
+        """Give a spring other values of its fields.
 
         Raises:
             InputError: a value is not possible; nothing changes.
@@ -123,9 +124,9 @@ class Model:
             self._residual = Residual(*norm)
         return self._residual
 
-    def lengths(self) -> Array:
-        """(poses, springs that are on) [m] over the same random poses."""
-        return self._over.length
+    def paths(self) -> Array:
+        """(poses, springs that are on) [m or rad] over the same random poses."""
+        return self._over.path
 
     def judge(self) -> Balance:
         """The verdict of `equipoise check`; takes seconds. Remembered until something changes."""
@@ -150,7 +151,8 @@ class Model:
         """Choose springs anew under the present constraints; False when that is no better, and nothing changes.
 
         The pairs of bodies and the number of springs stay, attachments may go as far out as they are or as a link's
-        size suggests. Springs that are off are left out. A mechanism without springs gets three.
+        size suggests. Springs that are off are left out, those on joints stay as they are. A mechanism without springs
+        gets three.
 
         Raises:
             InfeasibleError: no springs on these pairs help.
@@ -177,18 +179,19 @@ class Model:
 
     def _designed(self, progress: Progress | None) -> Design:
         present = [spring for spring, on in zip(self.springs, self.on, strict=True) if on]
-        if not present:
-            return design(self.mechanism, "convex", springs=SPRINGS, progress=progress)
-        regions = _regions(self.mechanism, present)
-        pairs = list(dict.fromkeys((spring.body_a, spring.body_b) for spring in present))
-        options = {"pairs": pairs, "regions": regions, "springs": len(present), "progress": progress}
-        return design(self.mechanism, "convex", **options)
+        chosen = [spring for spring in present if isinstance(spring, Spring)]
+        kept = self.mechanism.with_springs(spring for spring in present if spring not in chosen)
+        problem = Problem.of(kept, keep=bool(kept.springs))
+        if chosen:
+            regions = _regions(kept, chosen)
+            problem = problem.with_regions(regions).with_pairs((spring.body_a, spring.body_b) for spring in chosen)
+        return solve(problem, springs=len(chosen) or SPRINGS, progress=progress)
 
-    def _take(self, springs: list[Spring], on: list[bool] | None = None) -> None:
+    def _take(self, springs: list[Element], on: list[bool] | None = None) -> None:
         self.springs, self.on = springs, on or [True] * len(springs)
         self._changed()
 
-    def _try(self, springs: list[Spring]) -> None:
+    def _try(self, springs: list[Element]) -> None:
         old, self.springs = self.springs, springs
         try:
             self._changed()
@@ -235,7 +238,7 @@ def _tip(mechanism: Mechanism, tree: Tree) -> tuple[str, Vec3]:
 def _regions(mechanism: Mechanism, springs: list[Spring]) -> dict[str, Region]:
     mounts, radius = Mounts.of(mechanism), {}
     for spring in springs:
-        for body, p in ((spring.body_a, spring.p_a), (spring.body_b, spring.p_b)):
+        for body, p in spring.ends:
             here = max(radius.get(body, 0.0), mounts.default_radius(body), float(np.linalg.norm(p)) * (1 + 1e-9))
             radius[body] = here
     return {body: Region.ball(r) for body, r in radius.items()}

@@ -42,7 +42,7 @@ class Panel:
             self.energies = self.gui.add_html(readout.energies(model))
         with self.gui.add_folder("Design"):
             self._design()
-        self.springs = SpringPanel(self)
+        self.springs = SpringPanel(server, model, scene, self.lock, lambda: self.show(rebuild=True), self.say)
         self.quiet = False
 
     def show(self, rebuild: bool = False) -> None:
@@ -76,13 +76,13 @@ class Panel:
 
     def _poses(self) -> None:
         low, high = bounds(self.model.tree)
-        self.sliders, units = [], self.model.tree.units
+        self.sliders = []
         for j, name in enumerate(self.model.tree.coordinates):
-            scale, unit = (180 / np.pi, "deg") if units[j] == "rad" else (1000.0, "mm")
+            scale = name.scale
             now = _steps(scale * self.model.q[j])
             least = min(_steps(scale * low[j], np.ceil), now)  # within the range, on a step
             most = max(_steps(scale * high[j], np.floor), now, least + STEP)
-            slider = self.gui.add_slider(f"{name} [{unit}]", least, most, STEP, now)
+            slider = self.gui.add_slider(f"{name} [{name.shown_unit}]", least, most, STEP, now)
             slider.on_update(lambda _: self._slid())
             self.sliders.append((slider, scale))
         self.motions = motions(self.model.file, self.model.rest)

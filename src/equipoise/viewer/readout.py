@@ -36,10 +36,10 @@ def status(model: Model) -> str:
 
 def torques(model: Model) -> str:
     """Holding torque of every coordinate in this pose, without and with springs."""
-    names, units = model.tree.coordinates, model.tree.units
+    names = model.tree.coordinates
     before, after = model.state.gravity_torque[0], model.state.torque[0]
     order = np.sort(np.argsort(-np.abs(before), kind="stable")[:MOST])
-    words = ["N m" if units[j] == "rad" else "N" for j in order]
+    words = [names[j].load_unit for j in order]
     title = "Holding torque in this pose"
     floor = 1e-9 * max(1.0, float(np.abs(before).max(initial=0)))
     picture = svg.bars([names[j] for j in order], before[order], after[order], words, title, floor)

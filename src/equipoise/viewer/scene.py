@@ -13,7 +13,7 @@ from ..report import style
 from ..report.skeleton import Point, Skeleton
 from .meshes import Picture
 from .model import Model
-from .shapes import across, capsule, coil, colour
+from .shapes import across, capsule, coil, colour, wire
 
 THICK = 0.032  # radius of a link, of the mechanism's size
 TURNS = 12
@@ -38,7 +38,7 @@ class Scene:
         """Draw everything anew: springs or the payload have changed."""
         model, scene = self.model, self.server.scene
         self.skeleton = Skeleton.of(model.file.with_springs(model.springs).with_masses(model.mechanism.masses))
-        self.reach = max(self._reach(), 1e-9)
+        self.reach = self._reach()
         with self.server.atomic():
             scene.add_frame("/arm", show_axes=False)  # replaces whatever hung on it
             names = model.tree.names
@@ -50,18 +50,18 @@ class Scene:
     def update(self) -> None:
         """Move everything to the model's pose."""
         poses = self.model.tree.poses(self.model.q[None])
-        force = iter(self._forces())
+        shares = self._shares()
         with self.server.atomic():
             for i, frame in enumerate(self.bodies):
                 frame.wxyz, frame.position = _quaternion(poses.R[0, i]), poses.p[0, i]
             for handle, a, b in self.rods:
                 handle.vertices = capsule(a.at(poses)[0], b.at(poses)[0], 0.5 * self.thick)[0].astype(np.float32)
-            for i, (parts, (a, b)) in enumerate(zip(self.springs, self.skeleton.springs, strict=True)):
-                start, end, on = a.at(poses)[0], b.at(poses)[0], self.model.on[i]
+            for i, (parts, line) in enumerate(zip(self.springs, self.skeleton.springs, strict=True)):
+                places, on = np.array([point.at(poses)[0] for point in line]), self.model.on[i]
                 parts["coil"].visible = on
-                parts["coil"].vertices = self._wire(start, end)[0].astype(np.float32)
-                parts["coil"].color = colour(abs(next(force)) / self.reach) if on else FIXED
-                parts["ends"][0].position, parts["ends"][1].position = start, end
+                parts["coil"].vertices = self._wire(places)[0].astype(np.float32)
+                parts["coil"].color = colour(shares[i]) if on else FIXED
+                parts["ends"][0].position, parts["ends"][1].position = places[0], places[-1]
 
     def world(self, point: Point) -> Array:
         """(3,) where a point of a body is now."""
@@ -137,31 +137,35 @@ class Scene:
     def _coils(self) -> None:
         scene, poses = self.server.scene, self.model.tree.poses(self.model.q[None])
         self.springs = []
-        for i, (a, b) in enumerate(self.skeleton.springs):
-            vertices, faces = self._wire(a.at(poses)[0], b.at(poses)[0])
+        for i, line in enumerate(self.skeleton.springs):
+            vertices, faces = self._wire(np.array([point.at(poses)[0] for point in line]))
             mark = _rgb(style.spring_colour(i))
             handle = scene.add_mesh_simple(f"/arm/spring{i}", vertices, faces, color=mark, side="double")
             ends = [scene.add_icosphere(f"/arm/end{i}{j}", 0.6 * self.thick, mark, subdivisions=2) for j in "ab"]
             self.springs.append({"coil": handle, "ends": ends})
 
-    def _wire(self, a: Array, b: Array) -> tuple[Array, Any]:
-        return coil(a, b, 0.85 * self.thick, 0.19 * self.thick, TURNS)
+    def _wire(self, line: Array) -> tuple[Array, Any]:
+        """A coil between two points, else a wire along them (points, 3)."""
+        if len(line) > 2:
+            return wire(line, 0.25 * self.thick)
+        return coil(line[0], line[1], 0.85 * self.thick, 0.19 * self.thick, TURNS)
 
-    def _forces(self) -> Array:
-        """Force of each spring that is on, 0 for the others [N]."""
-        lengths, found = iter(self.model.state.length[0]), []
-        for spring, on in zip(self.model.springs, self.model.on, strict=True):
-            found.append(spring.stiffness * (float(next(lengths)) - spring.free_length) if on else 0.0)
-        return np.array(found)
+    def _shares(self) -> list[float]:
+        """Force of each spring, a share of the largest that any of its unit has over the random poses; 0 if off."""
+        on = iter(zip(self.model.mechanism.springs, self.model.state.path[0], strict=True))
+        found = []
+        for present in self.model.on:
+            spring, path = next(on) if present else (None, 0.0)
+            found.append(abs(float(spring.law.force(path))) / self.reach[spring.force_unit] if spring else 0.0)
+        return found
 
-    def _reach(self) -> float:
-        """The largest force of any spring over the random poses [N]."""
-        springs = self.model.mechanism.springs
-        if not springs:
-            return 1.0
-        length = self.model.lengths()
-        force = [s.stiffness * np.abs(length[:, i] - s.free_length).max() for i, s in enumerate(springs)]
-        return float(max(force))
+    def _reach(self) -> dict[str, float]:
+        """The largest force of any spring over the random poses, of each unit [N or N m]."""
+        reach: dict[str, float] = {}
+        for spring, path in zip(self.model.mechanism.springs, self.model.paths().T, strict=True):
+            most = float(np.abs(spring.law.force(path)).max())
+            reach[spring.force_unit] = max(most, reach.get(spring.force_unit, 1e-9))
+        return reach
 
 
 def _rgb(text: str) -> tuple[int, int, int]:

@@ -12,6 +12,7 @@ from typing import Any
 from ..errors import EquipoiseWarning, Fault, InputError
 from ..io import check_savable
 from ..mechanism import Mechanism
+from .gate import quiet, served
 
 HOST, PORT = "127.0.0.1", 8080
 LOCAL = "localhost"
@@ -22,7 +23,7 @@ class Viewer:
 
     Attributes:
         model, scene, panel: its parts.
-        url: of the page.
+        url: of the page; who knows it may change the design and save it.
     """
 
     def __init__(
@@ -51,7 +52,8 @@ class Viewer:
         own_address(host)
         if not local:
             warnings.warn(
-                f"the viewer listens on {host}: whoever reaches this address can change the design and save it",
+                f"the viewer listens on {host}, unencrypted: whoever learns the page's address, or listens in on the "
+                "network, can change the design and save it",
                 EquipoiseWarning,
                 stacklevel=2,
             )
@@ -61,18 +63,19 @@ class Viewer:
         from .scene import Scene
 
         self.model = Model(mechanism)
-        self.server = viser.ViserServer(host=host, port=port, label=mechanism.name, verbose=False)
+        self.server, gate, messages = served(viser, host, port, mechanism.name)
         self.server.gui.configure_theme(
             control_width="large", show_logo=False, show_share_button=False, brand_color=(0, 92, 150)
         )
         self.scene = Scene(self.server, self.model, pictures(source) if source is not None else ())
         self.panel = Panel(self.server, self.model, self.scene, Path(output))
-        address = host if ":" not in host else f"[{host}]"
-        self.url = f"http://{address}:{self.server.get_port()}"
+        messages.hear(self.server)
+        self.url = gate.url(self.server.get_port())
 
     def close(self) -> None:
         self.panel.playing = False
-        self.server.stop()
+        with quiet():
+            self.server.stop()
 
 
 def loopback(host: str) -> bool:

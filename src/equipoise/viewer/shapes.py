@@ -40,6 +40,12 @@ def coil(a: Array, b: Array, radius: float, wire: float, turns: int) -> tuple[Ar
     return _tube(line, x, wire), _faces(len(line), SIDES)
 
 
+def wire(line: Array, radius: float) -> tuple[Array, Integers]:
+    """Vertices and faces of a wire along a line (points, 3) [m]."""
+    normal = np.linalg.svd(line - line.mean(axis=0))[2][-1]
+    return _tube(line, normal, radius), _faces(len(line), SIDES)
+
+
 def colour(share: float) -> tuple[int, int, int]:
     """From blue for no force over yellow to red for `share` 1 of the largest."""
     share = float(np.clip(share, 0, 1))

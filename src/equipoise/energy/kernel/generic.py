@@ -7,7 +7,9 @@ never compiled with `parallel`: threads take blocks of poses instead, so there i
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
+from threading import Event
 
 import numpy as np
 
@@ -42,17 +44,28 @@ def run(program: Program, q: np.ndarray, out: np.ndarray) -> float:
     """
     registers = np.empty((program.registers, LANES), out.dtype)
     p = program
-    return compiled()(p.code, p.to, p.a, p.b, p.c, p.k, p.m, p.outputs, p.sign, q, registers, out)
+    arguments = p.code, p.to, p.a, p.b, p.c, p.k, p.m, p.outputs, p.sign, q, registers, out
+    if not _BROKEN.is_set():
+        try:
+            return compiled(keep=True)(*arguments)
+        except Exception:  # what is kept is spoilt, or cannot be kept on a full disk: numba says it in many ways
+            _BROKEN.set()
+            with suppress(Exception):
+                compiled(keep=True)._cache.flush()  # type: ignore[attr-defined]  # so that the next run keeps it again
+    return compiled(keep=False)(*arguments)
+
+
+_BROKEN = Event()  # the directory of what is compiled is of no use to this process
 
 
 @lru_cache
-def compiled() -> Callable[..., float]:
-    """The compiled `interpret`."""
+def compiled(keep: bool) -> Callable[..., float]:
+    """The compiled `interpret`, kept on disk for the next process or not."""
     from numba import njit
 
     options = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
     try:
-        return njit(cache=True, **options)(interpret)
+        return njit(cache=keep, **options)(interpret)
     except RuntimeError:  # no directory to keep it in
         return njit(**options)(interpret)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Array
-from ...errors import UnsupportedError
+from ...errors import Fault, InputError, UnsupportedError, nearest
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Tree
 from ...mechanism import Mechanism
@@ -45,10 +45,10 @@ class Batch(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """`gravity` (N,) energy [J], `length` (N, springs) [m], torque of gravity and of the springs (N, n) [N m or N]."""
+    """`gravity` (N,) energy [J], `path` (N, springs) [m or rad], torque of gravity and springs (N, n) [N m or N]."""
 
     gravity: Array
-    length: Array
+    path: Array
     gravity_torque: Array
     spring_torque: Array
 
@@ -91,7 +91,7 @@ class Kernel:
         if out is None:
             out = _empty(rows, len(q), q.dtype)
         elif out.shape != (rows, len(q)) or out.dtype != q.dtype or (len(q) > 1 and out.strides[1] != out.itemsize):
-            raise ValueError(f"out has shape {out.shape} and {out.dtype}, expected rows of {(rows, len(q))}, {q.dtype}")
+            raise InputError(f"out has shape {out.shape} and {out.dtype}, expected rows of {(rows, len(q))}, {q.dtype}")
         self._total.run(q.T, out, threads, tier)
         return Batch(out[0], out[1:].T)
 
@@ -100,20 +100,20 @@ class Kernel:
         return _empty(self._total.rows, N, np.dtype(dtype))
 
     def parts(self, q: ArrayLike, *, threads: int = 1, tier: Tier | None = None) -> Parts:
-        """Energies, lengths and torques of gravity and springs apart, at `q` (N, n) [rad or m]."""
+        """Energies, paths and torques of gravity and springs apart, at `q` (N, n) [rad or m]."""
         q = self._poses(q).astype(float, copy=False)
         out = _empty(self._split.rows, len(q), q.dtype)
         self._split.run(q.T, out, threads, tier)
         n, springs = self.tree.n, len(self.mechanism.springs)
-        gravity, length, gravity_torque, spring_torque = np.split(out, np.cumsum([1, springs, n]))
-        return Parts(gravity[0], length.T, gravity_torque.T, spring_torque.T)
+        gravity, path, gravity_torque, spring_torque = np.split(out, np.cumsum([1, springs, n]))
+        return Parts(gravity[0], path.T, gravity_torque.T, spring_torque.T)
 
     def _poses(self, q: ArrayLike) -> Real:
         q = np.asarray(q)
         if q.dtype not in (np.float32, np.float64):
             q = q.astype(float)
         if q.ndim != 2 or q.shape[1] != self.tree.n:
-            raise ValueError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
+            raise InputError(f"q has shape {q.shape}, expected (N, {self.tree.n}) for {self.tree.coordinates}")
         fits = q.flags.aligned and all(stride % q.itemsize == 0 for stride in q.strides)
         return q if fits else q.copy()
 
@@ -202,7 +202,7 @@ class _Code:
             return lambda q, out, streamed: generic.run(program, q, out)
         if tier == "numpy":
             return lambda q, out, streamed: by_numpy.run(program, q, out)
-        raise ValueError(f"tier '{tier}' is none of {', '.join(TIERS)}")
+        raise InputError(Fault(("tier",), f"there is no tier {nearest(tier, TIERS)}", TIERS))
 
 
 def _empty(rows: int, N: int, dtype: np.dtype) -> Real:

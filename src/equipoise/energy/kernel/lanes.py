@@ -114,12 +114,11 @@ class Lanes:
             case trace.SQRT:
                 kind = f"v{self.lanes}f{32 if self.single else 64}"
                 return self.new(f"call {real} @llvm.sqrt.{kind}({real} {a})")
-            case trace.SHARE:
-                ratio = self.new(f"fdiv {real} {self.splat(k)}, {a}")
-                share = self.new(f"fsub {real} {self.splat(1.0)}, {ratio}")
-                some = self.new(f"fcmp ogt {real} {a}, zeroinitializer")
-                return self.new(f"select <{self.lanes} x i1> {some}, {real} {share}, {real} zeroinitializer")
-        raise AssertionError(f"operation {code}")
+        # what is left is trace.SHARE
+        ratio = self.new(f"fdiv {real} {self.splat(k)}, {a}")
+        share = self.new(f"fsub {real} {self.splat(1.0)}, {ratio}")
+        some = self.new(f"fcmp ogt {real} {a}, zeroinitializer")
+        return self.new(f"select <{self.lanes} x i1> {some}, {real} {share}, {real} zeroinitializer")
 
     def sincos(self, x: str) -> tuple[str, str]:
         wide = self.wide

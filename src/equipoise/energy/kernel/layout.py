@@ -15,8 +15,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...kinematics.tree import Link, Motion, Tree
+from ...masses import lumped_masses
 from ...rotation import skew
-from ..potential import lumped_masses
 
 SNAP = 1e-15  # entries of rotations closer than this to 0 or +-1 are that
 

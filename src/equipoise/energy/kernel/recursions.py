@@ -13,13 +13,12 @@ Gravity's moment is passed in local axes in both: that is never dearer.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import sqrt
 from typing import Literal
 
 import numpy as np
 
 from ...arrays import Array
-from ...spring import Spring
+from ...elements.element import End, LinePen, Pens, Pull
 from .layout import Layout, Turn
 from .trace import Program, Trace, Value, Vector
 from .vectors import ZERO, about_x, about_z, add, angle_sum, constant, cross, cross_z, minus, plus, scaled
@@ -31,7 +30,7 @@ RECURSIONS: tuple[Recursion, ...] = ("local", "world")
 def programs(layout: Layout, split: bool) -> dict[Recursion, Program]:
     """The program of every recursion.
 
-    Its outputs with `split`: gravity's energy, the length of each spring, the torques of gravity (n) and of the
+    Its outputs with `split`: gravity's energy, the path of each spring, the torques of gravity (n) and of the
     springs (n). Else the total energy and the total torque (n).
     """
     return {recursion: Recurrence(layout).program(recursion, split) for recursion in RECURSIONS}
@@ -54,10 +53,9 @@ class Recurrence:
         """The program; see `programs` for its outputs."""
         t = self.t
         gravity, gravity_torque = self._gravity()
-        springs = self._local() if recursion == "local" else self._world()
-        lengths, energies, torque = springs
+        paths, energies, torque = self._local() if recursion == "local" else self._world()
         if split:
-            outputs = [gravity, *lengths, *self._coordinates(gravity_torque), *self._coordinates(torque)]
+            outputs = [gravity, *paths, *self._coordinates(gravity_torque), *self._coordinates(torque)]
         else:
             for row, value in torque.items():
                 gravity_torque[row] = t.add(gravity_torque.get(row, 0.0), value)
@@ -158,53 +156,60 @@ class Recurrence:
         x, y, z = (self.t.mul(float(a), self.values[row]) for a in direction)
         return x, y, z
 
-    # springs, in lengths scaled by the root of their stiffness
+    # springs; of those along a line all lengths are multiplied by what makes their law cheapest
 
-    def _ends(self, spring: Spring) -> list[tuple[float, int, int, Array]]:
+    def _elements(self, line: LinePen, rows: dict[int, Value]) -> tuple[list[Value], list[Value]]:
+        """Path and energy of each spring; the pens add its torques to `rows` or keep its forces."""
+        t = self.t
+
+        def angle(terms: tuple[tuple[str, float], ...]) -> tuple[Value, Pull]:
+            own = [(self.tree.rows[joint], float(ratio)) for joint, ratio in terms]
+
+            def pull(force: Value) -> None:
+                for row, ratio in own:
+                    add(t, rows, row, t.mul(ratio, force))
+
+            return t.total([t.mul(ratio, self.values[row]) for row, ratio in own]), pull
+
+        found = [spring.symbols(t, Pens(line, angle)) for spring in self.tree.mechanism.springs]
+        return [path for path, _ in found], [energy for _, energy in found]
+
+    def _ends(self, ends: tuple[End, End], scale: float) -> list[tuple[float, int, int, Array]]:
         """Both ends as (sign and scale, frame, origin, point from the origin)."""
         found = []
-        for sign, body, p in ((-1.0, spring.body_a, spring.p_a), (1.0, spring.body_b, spring.p_b)):
+        for sign, (body, p) in zip((-1.0, 1.0), ends, strict=True):
             seat = self.layout.seats[self.tree.index[body]]
-            found.append((sign * sqrt(spring.stiffness), seat.frame, seat.origin, seat.point(np.array(p))))
+            found.append((sign * scale, seat.frame, seat.origin, seat.point(np.array(p))))
         return found
-
-    def _law(self, spring: Spring, d: Vector) -> tuple[Value, Value, Value]:
-        """Length [m], energy [J], and the factor of the force: ``1 - free_length/length``."""
-        t, k = self.t, sqrt(spring.stiffness)
-        square = t.dot(d, d)
-        size = t.sqrt(square)
-        length = t.mul(1 / k, size)
-        if not spring.free_length:
-            return length, t.mul(0.5, square), 1.0
-        free = spring.free_length * k
-        over = t.add(size, -free)
-        return length, t.mul(0.5, t.mul(over, over)), t.share(size, free)
 
     def _local(self) -> tuple[list[Value], list[Value], dict[int, Value]]:
         t, layout = self.t, self.layout
-        lengths, energies, total = [], [], {}
-        for spring in self.tree.mechanism.springs:
+        total: dict[int, Value] = {}
+
+        def line(ends: tuple[End, End], scale: float) -> tuple[Vector, Pull]:
             parts: dict[int, Vector] = {}
             slides: list[tuple[int, int, Array]] = []
-            (k_a, X_a, o_a, p_a), (k_b, X_b, o_b, p_b) = self._ends(spring)
-            for scale, frame, p in ((k_a, X_a, p_a), (k_b, X_b, p_b)):
-                parts[frame] = plus(t, parts.get(frame, ZERO), constant(scale * p))
+            (k_a, X_a, o_a, p_a), (k_b, X_b, o_b, p_b) = self._ends(ends, scale)
+            for k, frame, p in ((k_a, X_a, p_a), (k_b, X_b, p_b)):
+                parts[frame] = plus(t, parts.get(frame, ZERO), constant(k * p))
             path_a, path_b = layout.path(o_a), layout.path(o_b)
-            for scale, path, other in ((k_a, path_a, path_b), (k_b, path_b, path_a)):
+            for k, path, other in ((k_a, path_a, path_b), (k_b, path_b, path_a)):
                 for o in (o for o in path if o not in other):
                     step = layout.origins[o]
-                    moved = constant(scale * step.step)
+                    moved = constant(k * step.step)
                     if step.slide is not None:
-                        moved = plus(t, moved, self._along(step.row, scale * step.slide))
-                        slides.append((step.frame, step.row, scale * step.slide))
+                        moved = plus(t, moved, self._along(step.row, k * step.slide))
+                        slides.append((step.frame, step.row, k * step.slide))
                     parts[step.frame] = plus(t, parts.get(step.frame, ZERO), moved)
             rows: dict[int, Value] = {}
-            length, energy, share = self._law(spring, self._couple(parts, slides, None, rows))
-            lengths.append(length)
-            energies.append(energy)
-            for row, value in rows.items():
-                add(t, total, row, t.mul(share, value))
-        return lengths, energies, total
+
+            def pull(share: Value) -> None:
+                for row, value in rows.items():
+                    add(t, total, row, t.mul(share, value))
+
+            return self._couple(parts, slides, None, rows), pull
+
+        return *self._elements(line, total), total
 
     def _world(self) -> tuple[list[Value], list[Value], dict[int, Value]]:
         t, layout = self.t, self.layout
@@ -218,22 +223,25 @@ class Recurrence:
             p.append(plus(t, p[step.parent], steps[-1]))
         force: dict[int, Vector] = {}  # on each origin
         moment: dict[int, Vector] = {}  # on each frame
-        lengths, energies, rows = [], [], {}
-        for spring in self.tree.mechanism.springs:
-            ends = self._ends(spring)
-            k = sqrt(spring.stiffness)
-            arms = [self._in_world(axes[frame], constant(k * point)) for _, frame, _, point in ends]
-            (_, X_a, o_a, _), (_, X_b, o_b, _) = ends
-            between = scaled(t, k, minus(t, p[o_b], p[o_a]))
+        rows: dict[int, Value] = {}
+
+        def line(ends: tuple[End, End], scale: float) -> tuple[Vector, Pull]:
+            both = self._ends(ends, scale)
+            arms = [self._in_world(axes[frame], constant(scale * point)) for _, frame, _, point in both]
+            (_, X_a, o_a, _), (_, X_b, o_b, _) = both
+            between = scaled(t, scale, minus(t, p[o_b], p[o_a]))
             d = plus(t, between, minus(t, arms[1], arms[0]))
-            length, energy, share = self._law(spring, d)
-            lengths.append(length)
-            energies.append(energy)
-            f = scaled(t, share, d)
-            for sign, frame, origin, arm in ((-1.0, X_a, o_a, arms[0]), (1.0, X_b, o_b, arms[1])):
-                mine = scaled(t, sign, f)
-                moment[frame] = plus(t, moment.get(frame, ZERO), cross(t, arm, mine))
-                force[origin] = plus(t, force.get(origin, ZERO), scaled(t, k, mine))
+
+            def pull(share: Value) -> None:
+                f = scaled(t, share, d)
+                for sign, frame, origin, arm in ((-1.0, X_a, o_a, arms[0]), (1.0, X_b, o_b, arms[1])):
+                    mine = scaled(t, sign, f)
+                    moment[frame] = plus(t, moment.get(frame, ZERO), cross(t, arm, mine))
+                    force[origin] = plus(t, force.get(origin, ZERO), scaled(t, scale, mine))
+
+            return d, pull
+
+        paths, energies = self._elements(line, rows)
         for o in range(len(layout.origins) - 1, 0, -1):
             if o in force:
                 step, f = layout.origins[o], force[o]
@@ -246,7 +254,7 @@ class Recurrence:
                 frame = layout.frames[i]
                 add(t, rows, frame.row, t.dot([row[2] for row in axes[i]], moment[i]))
                 moment[frame.base] = plus(t, moment.get(frame.base, ZERO), moment[i])
-        return lengths, energies, rows
+        return paths, energies, rows
 
     def _axes(self) -> list[tuple[Vector, Vector, Vector]]:
         """The rows of each frame's rotation matrix: a row is a world axis, and goes outwards as any vector."""

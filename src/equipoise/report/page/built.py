@@ -13,11 +13,13 @@ import numpy as np
 
 from ...arrays import Array
 from ...balance import Balance
+from ...coordinate import Coordinate
 from ...energy.fourier import EXACT
 from ...errors import EquipoiseError
 from ...hardware import Bill, bill
 from ...hardware.bill import way_dict
 from ...hardware.wire import MM
+from ...progress import Progress
 from ...robust import Scatter, Tolerance, tolerance
 from ...simulate import Release, release
 from ...simulate.release import SOFT
@@ -28,8 +30,6 @@ EXTRAS = ("simulation", "hardware", "tolerance")
 SECONDS, POSES = 5.0, 5  # of the simulation: short, `equipoise simulate` runs longer
 BUILDS, LOOKED_AT = 20_000, 500  # builds of the tolerance, and poses of each
 NAMED = 6  # parameters that matter most
-
-Progress = Callable[[str, float], None]
 Result = TypeVar("Result", Release, Bill, Tolerance)
 
 
@@ -102,8 +102,8 @@ def _simulation(found: Release) -> list[Block]:
         blocks.append(Paragraph(text))
     bare, held = (np.abs(x).max(axis=0) for x in (found.unbalanced, found.design.holding))
     rows = [
-        (name, _plain(float(a)), Number(float(b), f"{b:.2g}"), _unit(unit))
-        for name, unit, a, b in zip(found.coordinates, found.units, bare, held, strict=True)
+        (name, _plain(float(a)), Number(float(b), f"{b:.2g}"), name.load_unit)
+        for name, a, b in zip(found.coordinates, bare, held, strict=True)
     ]
     head = ("coordinate", "without springs", "with springs", "unit")
     blocks.append(Table.of("Torque that holds these poses, by an independent engine", head, rows))
@@ -137,7 +137,7 @@ def _hardware(found: Bill) -> list[Block]:
     text += f"unbalanced torque is left; the springs weigh {1000 * found.mass:.4g} g together."
     balance = found.balance
     loads = (found.left.residual, found.left.friction)
-    left = _loads(balance.coordinates, balance.units, loads, float(balance.unbalanced.max.max(initial=0)))
+    left = _loads(balance.coordinates, loads, float(balance.unbalanced.max.max(initial=0)))
     head = ("coordinate", "largest residual", "largest friction of the springs' mounts", "unit")
     return [
         Paragraph(text, strong=True),
@@ -157,7 +157,7 @@ def _tolerance(found: Tolerance) -> list[Block]:
         text += " Lengths do not scatter here, because loops would not close."
     p95 = np.percentile(found.peak, 95, axis=0)
     loads = (found.nominal, found.peak.mean(axis=0), p95)
-    rows = _loads(found.coordinates, found.units, loads, float(p95.max(initial=0)))
+    rows = _loads(found.coordinates, loads, float(p95.max(initial=0)))
     head = ("coordinate", "as drawn", "mean of all builds", "95 % of builds stay below", "unit")
     ranked = [(p.name, Number(share, f"{100 * share:.1f} %")) for p, share in found.ranked[:NAMED]]
     return [
@@ -167,11 +167,11 @@ def _tolerance(found: Tolerance) -> list[Block]:
     ]
 
 
-def _loads(names: Sequence[str], units: Sequence[str], loads: Sequence[Array], whole: float) -> list[list[Cell]]:
+def _loads(coordinates: Sequence[Coordinate], loads: Sequence[Array], whole: float) -> list[list[Cell]]:
     """A row for each coordinate; less than `EXACT` of the `whole` counts as nothing."""
     return [
-        [name, *(Number(float(x[j]), number(float(x[j]) if x[j] > EXACT * whole else 0.0)) for x in loads), _unit(unit)]
-        for j, (name, unit) in enumerate(zip(names, units, strict=True))
+        [c, *(Number(float(x[j]), number(float(x[j]) if x[j] > EXACT * whole else 0.0)) for x in loads), c.load_unit]
+        for j, c in enumerate(coordinates)
     ]
 
 
@@ -181,7 +181,3 @@ def _plain(value: float) -> Number:
 
 def _angle(x: float) -> str:
     return f"{np.degrees(x):.3g}°" if abs(x) >= 1e-4 else f"{x:.2g} rad"
-
-
-def _unit(unit: str) -> str:
-    return "N m" if unit == "rad" else "N"

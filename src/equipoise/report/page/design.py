@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
+from math import degrees
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..._version import __version__
 from ...balance import Balance
+from ...coordinate import Coordinate
 from ...energy.fourier import EXACT
 from ...io.yaml import to_text
+from ...masses import lumped_masses
 from ..schematic import symbol
 from ..text import percent, torque
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 
+HEADS = {
+    "m": ("k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]"),
+    "rad": ("k [N m/rad]", "relaxed at [deg]", "least [deg]", "largest [deg]", "largest torque [N m]"),
+}
+"""Columns of a table of springs whose path is a length, or an angle."""
 CONVENTIONS = (
     "A holding torque is what a joint has to supply to keep a pose: the derivative of the potential energy by its "
     "coordinate.",
@@ -35,30 +41,37 @@ def mechanism_section(balance: Balance) -> Section:
     looks: tuple[Block, ...] = (pictures.two_poses(balance), pictures.scheme(balance))
     if not balance.mechanism.springs:
         return Section("Mechanism", (*looks, Paragraph("It has no springs.")))
-    return Section("Mechanism and springs", (*looks, springs_table(balance), _attachments(balance)))
+    return Section("Mechanism and springs", (*looks, *springs_tables(balance), *_attachments(balance)))
 
 
-def springs_table(balance: Balance) -> Table:
-    """Each spring and how it is used."""
-    head = ("spring", "", "k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]")
-    rows = [
-        (
-            spring.name, symbol("k", i), Number(spring.stiffness, f"{spring.stiffness:.5g}"), _mm(spring.free_length),
-            _mm(use.min_length), _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
-        )
-        for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True))
-    ]  # fmt: skip
-    return Table.of("Springs, and how they are used over all poses looked at", head, rows)
+def springs_tables(balance: Balance) -> list[Table]:
+    """Each spring and how it is used; those along a line and those on joints apart."""
+    return [table for unit in HEADS if (table := _springs_table(balance, unit)) is not None]
 
 
-def _attachments(balance: Balance) -> Table:
+def _springs_table(balance: Balance, unit: str) -> Table | None:
+    show, rows = _mm if unit == "m" else _degrees, []
+    for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True)):
+        if spring.path_unit == unit:
+            strength, most = spring.strength[0], max(map(abs, use.force))
+            rows.append(
+                (
+                    spring.name, symbol("k", i), Number(strength, f"{strength:.5g}"),
+                    *map(show, (spring.free, *use.path)), Number(most, f"{most:.4g}"),
+                )
+            )  # fmt: skip
+    title = "Springs, and how they are used over all poses looked at"
+    return Table.of(title, ("spring", "", *HEADS[unit]), rows) if rows else None
+
+
+def _attachments(balance: Balance) -> list[Table]:
     ends = [
         (symbol(letter, i), spring.name, body, *map(_mm, p))
         for i, spring in enumerate(balance.mechanism.springs)
-        for letter, body, p in (("a", spring.body_a, spring.p_a), ("b", spring.body_b, spring.p_b))
+        for letter, (body, p) in zip("ab", spring.ends, strict=False)
     ]
     head = ("end", "spring", "body", "x [mm]", "y [mm]", "z [mm]")
-    return Table.of("Attachments, each in the frame of its body", head, ends)
+    return [Table.of("Attachments, each in the frame of its body", head, ends)] if ends else []
 
 
 def torque_section(balance: Balance) -> Section:
@@ -83,10 +96,10 @@ def torque_table(balance: Balance) -> Table:
     floor = _floor(balance)
     loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
     rows = []
-    for j, (name, unit) in enumerate(zip(balance.coordinates, balance.units, strict=True)):
+    for j, name in enumerate(balance.coordinates):
         cells: list[Cell] = [Number(float(load[j]), torque(float(load[j]), floor)) for load in loads]
         bound = "not known" if balance.bound is None else Number(balance.bound[j], torque(balance.bound[j], floor))
-        rows.append((name, *cells, bound, "N m" if unit == "rad" else "N"))
+        rows.append((name, *cells, bound, name.load_unit))
     head = (
         "coordinate", "largest without springs", "rms without", "largest with springs", "rms with", "proved bound",
         "unit",
@@ -96,16 +109,10 @@ def torque_table(balance: Balance) -> Table:
 
 def _worst(balance: Balance) -> Table:
     floor = _floor(balance)
-    pose = zip(
-        balance.coordinates,
-        balance.worst_configuration.tolist(),
-        balance.worst_torque.tolist(),
-        balance.units,
-        strict=True,
-    )
+    pose = zip(balance.coordinates, balance.worst_configuration.tolist(), balance.worst_torque.tolist(), strict=True)
     rows = [
-        (name, Number(value, _pose(value, unit)), Number(load, _signed(load, floor)), "N m" if unit == "rad" else "N")
-        for name, value, load, unit in pose
+        (name, Number(value, _value(name, value)), Number(load, _signed(load, floor)), name.load_unit)
+        for name, value, load in pose
     ]
     return Table.of("The worst pose that was found", ("coordinate", "value", "holding torque", "unit"), rows)
 
@@ -168,7 +175,7 @@ def conventions_section(balance: Balance) -> Section:
     """What all of this takes for granted."""
     m = balance.mechanism
     gravity = ", ".join(f"{value:g}" for value in m.gravity)
-    total = sum(body.mass for body in m.bodies) + sum(mass.mass for mass in m.masses) + sum(s.mass for s in m.springs)
+    total = sum(mass for _, mass, _ in lumped_masses(m))
     texts = [
         f"Gravity is ({gravity}) m/s² in the world's frame; all that moves or stands weighs {total:.4g} kg together.",
         *CONVENTIONS,
@@ -210,5 +217,10 @@ def _mm(value: float) -> Number:
     return Number(value, f"{round(1e3 * value, 2) + 0.0:g}")
 
 
-def _pose(value: float, unit: str) -> str:
-    return f"{np.degrees(value):.1f}°" if unit == "rad" else f"{1e3 * value:.1f} mm"
+def _degrees(value: float) -> Number:
+    return Number(value, f"{round(degrees(value), 2) + 0.0:g}")
+
+
+def _value(coordinate: Coordinate, value: float) -> str:
+    unit = "°" if coordinate.turns else f" {coordinate.shown_unit}"
+    return f"{coordinate.scale * value:.1f}{unit}"

@@ -10,10 +10,11 @@ from pathlib import Path
 from ...balance import Balance
 from ...errors import Fault, InputError, nearest
 from ...io.files import check_writable, write_bytes
+from ...progress import Progress, silent
 from .. import style
 from ..text import verdict
 from . import built, design
-from .built import EXTRAS, Progress
+from .built import EXTRAS
 from .content import Report
 from .html import page
 from .pdf import pdf
@@ -47,7 +48,7 @@ def make(
     for name in wanted:
         if name not in EXTRAS:
             raise InputError(Fault(("with",), f"no section {nearest(name, EXTRAS)}", EXTRAS))
-    report = progress or (lambda what, share: None)
+    report = progress or silent
     found = built.run(balance, wanted, seed, radius, report)
     report("drawing", 0.0)
     results = {name: getattr(found, name) for name in EXTRAS}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...balance import Balance
-from ...energy.potential import Potential
+from ...energy.evaluate import Potential
 from ...kinematics import Tree
 from .. import arm, loads, style, svg
 from ..figure import holding, picture
@@ -122,7 +122,7 @@ def scheme(balance: Balance, key: str = "scheme") -> Picture:
     """The schematic, whose letters the tables use; `key` makes its identifiers its own."""
     mechanism = balance.mechanism
     title = f"Schematic of {style.clean(mechanism.name, 60)}"
-    ends = "; ".join(f"spring {i} from {s.body_a} to {s.body_b}" for i, s in enumerate(mechanism.springs, start=1))
+    ends = "; ".join(f"spring {i} {s.between}" for i, s in enumerate(mechanism.springs, start=1))
     said = f"Links, joints and ground as lines, circles and hatching. {ends or 'No springs'}."
     letters = ": a and b are the ends of each spring, k its stiffness; the numbers are in the tables below"
     caption = f"{title}{letters if ends else ''}."
@@ -132,18 +132,17 @@ def scheme(balance: Balance, key: str = "scheme") -> Picture:
 def torque_bars(balance: Balance) -> list[Picture]:
     """The largest holding torque of each coordinate with springs and without; turning and sliding joints apart."""
     found = []
-    for unit, rows in loads.shown(balance).items():
-        what, symbol = loads.UNITS[unit]
+    for kind, rows in loads.shown(balance).items():
         names = [balance.coordinates[row] for row in rows]
         before, after = balance.unbalanced.max[rows], balance.residual.max[rows]
         floor = loads.below(balance) or loads.TINY
-        title = f"Largest holding {what}"
-        text = svg.bars(names, before, after, [symbol] * len(names), title, floor)
+        title = f"Largest holding {kind.load}"
+        text = svg.bars(names, before, after, [kind.load_unit] * len(names), title, floor)
         said = ElementTree.fromstring(text).get("aria-label", "")
-        all_of_unit = balance.units.count(unit)
+        all_of_unit = balance.units.count(kind.unit)
         which = "each coordinate" if len(rows) == all_of_unit else f"the {len(rows)} of {all_of_unit} most loaded ones"
         caption = f"{title} of {which}: grey without springs, green with them."
-        found.append(Picture(inline(text, f"bars-{unit}", title, said), caption, said, narrow=True))
+        found.append(Picture(inline(text, f"bars-{kind.unit}", title, said), caption, said, narrow=True))
     return found
 
 
@@ -160,10 +159,10 @@ def along_motion(balance: Balance) -> list[Picture]:
     found = [_curves("energies", "Energy", "J", way, energies)]
     rows = next(iter(loads.shown(balance).values()))
     j = int(rows[np.argmax(balance.unbalanced.max[rows])])
-    name, (what, symbol) = balance.coordinates[j], loads.UNITS[balance.units[j]]
+    name = balance.coordinates[j]
     gravity, both = state.gravity_torque[:, j], state.torque[:, j]
     torques = {"gravity": gravity, "springs": both - gravity, "both": both}
-    found.append(_curves("torques", f"Holding {what} of {name}", symbol, way, torques))
+    found.append(_curves("torques", f"Holding {name.load} of {name}", name.load_unit, way, torques))
     return found
 
 

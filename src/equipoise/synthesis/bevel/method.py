@@ -12,23 +12,24 @@ N roll +- pitch, wherever its ends are, and gravity only roll +- pitch, so that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import atan2, cos, pi, sin
 
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring, Vec3
 from ...errors import Fault, InfeasibleError, InputError
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import bounds
 from ...mechanism import Body, Coupling, Joint, Mechanism
-from ...spring import Spring, Vec3
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes
 from ..margin import torque_margin
-from ..method import Method, Parameter
+from ..method import Method
 from ..mounts import Mounts
+from ..options import MethodOptions, Number, option, takes
 from ..payload import Payload
 from .differential import ARRANGEMENTS, SIDES, differential
 from .shoulder import Shoulder, find
@@ -38,24 +39,11 @@ WORKSPACES = ("file", "hemisphere")
 ROLL = "roll"  # the third spring, where there is one
 
 
-def design(
-    mechanism: Mechanism,
-    *,
-    b: Given = None,
-    h: Given = None,
-    stiffness: Given = None,
-    arrangement: str = "near",
-    gear_ratio: float = 1.0,
-    disk_mass: Given = 0.0,
-    spacing: float | None = None,
-    workspace: str = "file",
-    payload: Sequence[float] | None = None,
-    payload_at: Sequence[float] | None = None,
-    friction: Given = None,
-) -> Design:
-    """Disks on both sides of the pitch link, geared to roll and pitch, and a spring on each.
+@dataclass(frozen=True, kw_only=True)
+class BevelOptions(MethodOptions):
+    """What the method bevel can be asked for.
 
-    Args:
+    Attributes:
         b, h, stiffness: of the spring on each side: from O to its end on the link and to that on the disk [m], and
             k [N/m]. At most two, the third follows from k b h = m g l / 2 on either side; all three where they fit. By
             default both lengths are half the link's size. "roll" is the spring of what only rolls.
@@ -69,28 +57,51 @@ def design(
             one is the middle: the fixed design with the least peak residual over the range.
         payload_at: where it is in the link's frame [m]; by default at its mass centre.
         friction: torque of the roll and pitch joint, by their names [N m].
+    """
+
+    b: Given = option(None, "length", "from O to a spring's end on the link; BODY is left, right or roll", each=True)
+    h: Given = option(None, "length", "from O to its end on the disk; two of b, h and k at most", each=True)
+    stiffness: Given = option(None, "stiffness", "k of a spring: k b h = m g l / 2 on either side", each=True)
+    arrangement: str = option(
+        "near", "text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS
+    )
+    gear_ratio: Number = option(1.0, "number", "teeth of the fixed gear over a disk's (default 1; others approximate)")
+    disk_mass: Given = option(0.0, "mass", "of a disk with its gear (default 0); BODY is left or right", each=True)
+    spacing: Number | None = option(None, "length", "from O to either disk (default a quarter of the link's size)")
+    workspace: str = option("file", "text", "joint ranges (default file)", WORKSPACES)
+    payload: Sequence[Number] | None = option(None, "mass", "one mass, or a range LOW,HIGH", many=True)
+    payload_at: Sequence[Number] | None = option(
+        None, "length", "x,y,z in the link's frame (default its com)", many=True
+    )
+    friction: Given = option(None, "torque", "of the joints, for the margin; BODY is a joint's name", each=True)
+
+
+@takes(BevelOptions)
+def design(mechanism: Mechanism, options: BevelOptions) -> Design:
+    """Disks on both sides of the pitch link, geared to roll and pitch, and a spring on each.
 
     Raises:
         InputError: a bad value.
         InfeasibleError: springs do not help at this gear ratio.
     """
-    ratio = number("gear_ratio", gear_ratio, positive=True)
-    for option, value, choices in (
+    arrangement, workspace, payload = options.arrangement, options.workspace, options.payload
+    ratio = number("gear_ratio", options.gear_ratio, positive=True)
+    for name, value, choices in (
         ("arrangement", arrangement, ARRANGEMENTS),
         ("workspace", workspace, WORKSPACES),
     ):
         if value not in choices:
-            raise InputError(Fault((option,), f"unknown value '{value}'", choices))
+            raise InputError(Fault((name,), f"unknown value '{value}'", choices))
     bare = mechanism.with_springs(())
     if workspace == "hemisphere":
         bare = _within(bare, _shoulder(bare).hemisphere())
     first = _shoulder(bare)
     size = Mounts.of(bare).default_radius(first.pitch.name)
-    width = size / 2 if spacing is None else number("spacing", spacing, positive=True)
-    masses = dict.fromkeys(SIDES, 0.0) | numbers("disk_mass", disk_mass, SIDES, positive=False)
+    width = size / 2 if options.spacing is None else number("spacing", options.spacing, positive=True)
+    masses = dict.fromkeys(SIDES, 0.0) | numbers("disk_mass", options.disk_mass, SIDES, positive=False)
     J = differential(arrangement, ratio)
     geared, disks = _with_disks(bare, first, J, masses, width)
-    carried = Payload.of(first, payload, payload_at)
+    carried = Payload.of(first, payload, options.payload_at)
     loaded = carried.on(geared, carried.middle)
     s = _shoulder(loaded)
 
@@ -103,7 +114,7 @@ def design(
         )
     if s.roll_weight:
         strength[ROLL] = s.roll_weight  # (7)
-    sizes = spring_sizes(strength, dict.fromkeys(strength, size), stiffness, b=b, h=h)
+    sizes = spring_sizes(strength, dict.fromkeys(strength, size), options.stiffness, b=options.b, h=options.h)
     springs = [
         _disk_spring(s, disk, side, atan2(d, c), width, sizes[side])
         for side, disk, (c, d) in zip(SIDES, disks, cosines, strict=True)
@@ -133,9 +144,9 @@ def design(
             "only; these leave the least mean square torque over the joint ranges"
         )
     found = Design.of(made, "bevel", free)
-    if friction is None:
+    if options.friction is None:
         return found
-    held = numbers("friction", friction, s.coordinates, positive=False)
+    held = numbers("friction", options.friction, s.coordinates, positive=False)
     free |= {"friction": held} | torque_margin(found.balance, held)
     return replace(found, free_parameters=free).with_provenance()
 
@@ -257,17 +268,5 @@ METHOD = Method(
     "Cho, Lee, Lee and Kang (2012), Eqs. (7), (11)-(18), (23)",
     applies,
     design,
-    {
-        "b": Parameter("length", "from O to a spring's end on the link; BODY is left, right or roll", each=True),
-        "h": Parameter("length", "from O to its end on the disk; two of b, h and k at most", each=True),
-        "stiffness": Parameter("stiffness", "k of a spring: k b h = m g l / 2 on either side", each=True),
-        "arrangement": Parameter("text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS),
-        "gear_ratio": Parameter("number", "teeth of the fixed gear over a disk's (default 1; others approximate)"),
-        "disk_mass": Parameter("mass", "of a disk with its gear (default 0); BODY is left or right", each=True),
-        "spacing": Parameter("length", "from O to either disk (default a quarter of the link's size)"),
-        "workspace": Parameter("text", "joint ranges (default file)", WORKSPACES),
-        "payload": Parameter("mass", "one mass, or a range LOW,HIGH", many=True),
-        "payload_at": Parameter("length", "x,y,z in the link's frame (default its com)", many=True),
-        "friction": Parameter("torque", "of the joints, for the margin; BODY is a joint's name", each=True),
-    },
+    BevelOptions,
 )

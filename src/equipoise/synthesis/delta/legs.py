@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...energy.potential import lumped_masses
+from ...errors import UnsupportedError
 from ...kinematics import Tree
 from ...kinematics.groups import Place, places
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Link
+from ...masses import lumped_masses
 from ...mechanism import Mechanism
 from ...rotation import about
 
@@ -24,7 +25,7 @@ Y = (0.0, 1.0, 0.0)
 SMALL = 1e-9  # relative: what counts as nothing
 
 
-class NotDelta(Exception):
+class NotDelta(UnsupportedError):
     """The mechanism is no DELTA robot that the method covers; the message says why."""
 
 

@@ -11,7 +11,7 @@ if AB = CD and the axes of E are below those of A. optimum: the same springs, ch
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -21,7 +21,9 @@ from ...errors import Fault, InputError
 from ...mechanism import Body, Joint, Mechanism
 from ...rotation import to_rpy
 from ..design import Design
-from ..method import Method, Parameter
+from ..given import number
+from ..method import Method
+from ..options import MethodOptions, Number, option, takes
 from .legs import DeltaLeg, NotDelta, delta_legs
 from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
 from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
@@ -30,62 +32,84 @@ Variant = Literal["full", "axis", "optimum"]
 VARIANTS: tuple[str, ...] = get_args(Variant)
 
 
-def design(
-    mechanism: Mechanism,
-    *,
-    variant: Variant = "full",
-    AV: float = 0.25,
-    AW: float = 0.3,
-    spring_7: float = 0.0,
-    share_7: float = 0.5,
-    link_2p: float = 0.0,
-    heights: Sequence[float] | None = None,
-    reach: float = 0.1,
-    objective: Objective = "peak",
-    samples: int = 2000,
-    seed: int = 0,
-    **guide: Any,
-) -> Design:
-    """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes.
+@dataclass(frozen=True, kw_only=True)
+class DeltaOptions(MethodOptions):
+    """What the method delta can be asked for.
 
-    Args:
+    Attributes:
         variant: full, axis or optimum; see the module.
         AV, AW: where spring 7 is attached [m]: V on link 2, W above A.
         spring_7: its mass [kg], `share_7` of it at V.
         link_2p: mass of each link 2' [kg], its mass centre half way along; full only.
+        BF, CS, FU, FT, FG8, link_8, link_9, frame, spring_10, spring_11, share_10, share_11, printed: of full only; see
+            `rocker.Guide`, whose defaults they have.
         heights: smallest and largest depth of the platform below the base [m], of axis and optimum; by default the
             middle half of what the rods allow.
         reach: of optimum: the platform within +-reach of the axis, both ways [m]; axis is judged there too.
         objective: of optimum: rms or peak torque over the workspace.
-        guide: the fields of `rocker.Guide`; full only.
+        samples, seed: random places of the platform.
+    """
+
+    variant: Variant = option("full", "text", "how many springs per leg, and for what (default full)", VARIANTS)
+    AV: Number = option(0.25, "length", "A to where spring 7 is attached to link 2 (default 250 mm)")
+    AW: Number = option(0.3, "length", "A to where spring 7 is attached above it (default 300 mm)")
+    spring_7: Number = option(0.0, "mass", "of each spring 7 (default 0)")
+    share_7: Number = option(0.5, "share", "of the mass of spring 7 that counts at V (default 50 %)")
+    link_2p: Number = option(0.0, "mass", "full: of each link 2' (default 0)")
+    BF: Number | None = option(None, "length", "full: B to F, the guide's half height (default 100 mm)")
+    CS: Number | None = option(None, "length", "full: C to where spring 10 is attached to the rod (default 100 mm)")
+    FU: Number | None = option(None, "length", "full: F to where spring 11 is attached to link 8 (default 80 mm)")
+    FT: Number | None = option(None, "length", "full: F to where spring 11 is attached above it (default 120 mm)")
+    FG8: Number | None = option(None, "length", "full: F to the mass centre of link 8 (default 50 mm)")
+    link_8: Number | None = option(None, "mass", "full: of each link 8 (default 0)")
+    link_9: Number | None = option(None, "mass", "full: of each slider 9 (default 0)")
+    frame: Number | None = option(None, "mass", "full: of each frame 12 (default 0)")
+    spring_10: Number | None = option(None, "mass", "full: of each spring 10 (default 0)")
+    spring_11: Number | None = option(None, "mass", "full: of each spring 11 (default 0)")
+    share_10: Number | None = option(None, "share", "full: of the mass of spring 10 that counts at S (default 50 %)")
+    share_11: Number | None = option(None, "share", "full: of the mass of spring 11 that counts at U (default 50 %)")
+    printed: bool | None = option(
+        None, "flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"
+    )
+    heights: Sequence[Number] | None = option(
+        None, "length", "axis, optimum: LOW,HIGH of the platform below the base", many=True
+    )
+    reach: Number = option(0.1, "length", "axis, optimum: half width of the workspace (default 100 mm)")
+    objective: Objective = option(
+        "peak", "text", "optimum: what is least over the workspace (default peak)", OBJECTIVES
+    )
+    samples: int = option(2000, "whole", "axis, optimum: random places of the platform (default 2000)")
+    seed: int = option(0, "whole", "of the random places (default 0)")
+
+
+@takes(DeltaOptions)
+def design(mechanism: Mechanism, options: DeltaOptions) -> Design:
+    """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes.
 
     Raises:
         InputError: a value out of range, or a workspace that the robot does not reach.
     """
+    variant = options.variant
     if variant not in VARIANTS:
         raise InputError(Fault(("variant",), f"there is no '{variant}'", VARIANTS))
-    for name, value in (("AV", AV), ("AW", AW)):
-        if not value > 0:
-            raise InputError(Fault((name,), f"must be more than 0 m, found {value:g}"))
-    valid = tuple(f.name for f in fields(Guide))
-    for name in guide:
-        if name not in valid or variant != "full":
-            raise InputError(
-                Fault((name,), f"variant '{variant}' has no such option", valid if variant == "full" else ())
-            )
-    common: dict[str, Any] = {"variant": variant, "AV": AV, "AW": AW, "spring_7": spring_7, "share_7": share_7}
+    spring = {name: getattr(options, name) for name in ("AV", "AW", "spring_7", "share_7")}
+    for name in ("AV", "AW"):
+        if not spring[name] > 0:
+            raise InputError(Fault((name,), f"must be more than 0 m, found {spring[name]:g}"))
+    guide = {f.name: value for f in fields(Guide) if (value := getattr(options, f.name)) is not None}
     if variant == "full":
         parts = Guide(**guide)
-        made = full(mechanism, parts, AV, AW, spring_7, share_7, link_2p)
+        link_2p = number("link_2p", options.link_2p, positive=False)
+        made = full(mechanism, parts, link_2p=link_2p, **spring)
         used = {f.name: getattr(parts, f.name) for f in fields(parts)}
-        return Design.of(made, "delta", {**common, "link_2p": link_2p, **used})
-    goal: Goal = "axis" if variant == "axis" else objective
-    box, found = one_per_leg(
-        mechanism, goal, AV=AV, AW=AW, spring_7=spring_7, share_7=share_7, heights=heights, reach=reach,
-        samples=samples, seed=seed,
-    )  # fmt: skip
-    area = {"heights": list(box.heights), "reach": box.reach}
-    return Design.of(found.mechanism, "delta", {**common, **area, "objective": objective, **found.numbers})
+        return Design.of(made, "delta", {"variant": variant, **spring, "link_2p": link_2p, **used})
+    for name in guide:
+        raise InputError(Fault((name,), f"variant '{variant}' has no such option"))
+    goal: Goal = "axis" if variant == "axis" else options.objective
+    where: dict[str, Any] = {name: getattr(options, name) for name in ("heights", "reach", "samples", "seed")}
+    box, found = one_per_leg(mechanism, goal, **spring, **where)
+    area = {"heights": list(box.heights), "reach": box.reach, "objective": options.objective}
+    return Design.of(found.mechanism, "delta", {"variant": variant, **spring, **area, **found.numbers})
 
 
 def one_per_leg(
@@ -169,30 +193,5 @@ METHOD = Method(
     "Simionescu, Ciupitu and Ionita, Mechanism and Machine Theory 87 (2015), doi 10.1016/j.mechmachtheory.2014.11.008",
     applies,
     design,
-    {
-        "variant": Parameter("text", "how many springs per leg, and for what (default full)", VARIANTS),
-        "AV": Parameter("length", "A to where spring 7 is attached to link 2 (default 250 mm)"),
-        "AW": Parameter("length", "A to where spring 7 is attached above it (default 300 mm)"),
-        "spring_7": Parameter("mass", "of each spring 7 (default 0)"),
-        "share_7": Parameter("share", "of the mass of spring 7 that counts at V (default 50 %)"),
-        "link_2p": Parameter("mass", "full: of each link 2' (default 0)"),
-        "BF": Parameter("length", "full: B to F, the guide's half height (default 100 mm)"),
-        "CS": Parameter("length", "full: C to where spring 10 is attached to the rod (default 100 mm)"),
-        "FU": Parameter("length", "full: F to where spring 11 is attached to link 8 (default 80 mm)"),
-        "FT": Parameter("length", "full: F to where spring 11 is attached above it (default 120 mm)"),
-        "FG8": Parameter("length", "full: F to the mass centre of link 8 (default 50 mm)"),
-        "link_8": Parameter("mass", "full: of each link 8 (default 0)"),
-        "link_9": Parameter("mass", "full: of each slider 9 (default 0)"),
-        "frame": Parameter("mass", "full: of each frame 12 (default 0)"),
-        "spring_10": Parameter("mass", "full: of each spring 10 (default 0)"),
-        "spring_11": Parameter("mass", "full: of each spring 11 (default 0)"),
-        "share_10": Parameter("share", "full: of the mass of spring 10 that counts at S (default 50 %)"),
-        "share_11": Parameter("share", "full: of the mass of spring 11 that counts at U (default 50 %)"),
-        "printed": Parameter("flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"),
-        "heights": Parameter("length", "axis, optimum: LOW,HIGH of the platform below the base", many=True),
-        "reach": Parameter("length", "axis, optimum: half width of the workspace (default 100 mm)"),
-        "objective": Parameter("text", "optimum: what is least over the workspace (default peak)", OBJECTIVES),
-        "samples": Parameter("whole", "axis, optimum: random places of the platform (default 2000)"),
-        "seed": Parameter("whole", "of the random places (default 0)"),
-    },
+    DeltaOptions,
 )

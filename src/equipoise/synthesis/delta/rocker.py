@@ -19,10 +19,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring, Vec3
 from ...errors import Fault, InputError
 from ...mechanism import Body, Coupling, Joint
 from ...rotation import to_rpy
-from ...spring import Spring, Vec3
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,11 @@ from typing import Literal, get_args
 import numpy as np
 
 from ...arrays import Array
-from ...energy.potential import Potential
+from ...elements import Spring
+from ...energy.evaluate import Potential
 from ...errors import Fault, InputError
 from ...kinematics import Tree
 from ...mechanism import Mechanism
-from ...spring import Spring
 from ...validate import MAX_SAMPLES, whole_number
 from .legs import DeltaLeg
 from .rocker import vec3

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...spring import Spring
+from ...elements import Spring
 from ..chain import Chain, ChainLink
 
 

@@ -7,51 +7,41 @@ from the ground (`from_ground`), as many as links. The equations hold for ball j
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring
 from ...errors import Fault, InfeasibleError, InputError, nearest
 from ...kinematics import Tree
 from ...kinematics.groups import places
 from ...mechanism import Mechanism
-from ...spring import Spring
 from ..chain import Chain, ChainLink, chain, reasons
 from ..design import Design
 from ..given import Given, number, numbers
-from ..method import Method, Parameter
+from ..method import Method
 from ..mounts import Mounts
+from ..options import MethodOptions, Number, option, takes
 from ..products import Product, fill
 from . import from_ground, two_links
 from .from_ground import fewest_springs
 from .two_links import FREE_3, LAYOUTS, TwoLinks
 
+GROUND = "ground"
+CHOICES = (*sorted(LAYOUTS), GROUND)
+SHARE = 0.5
+OF_TWO = ("k1", "a1", "b1", "k2", "a2", "b2", "k12", "a12", "b12")  # the options of layouts a to d
+OF_GROUND = ("k", "b", "height")
 
-def design(
-    mechanism: Mechanism,
-    *,
-    layout: str | None = None,
-    springs: int | None = None,
-    k2: float | None = None,
-    a2: float | None = None,
-    b2: float | None = None,
-    k12: float | None = None,
-    a12: float | None = None,
-    b12: float | None = None,
-    k1: float | None = None,
-    a1: float | None = None,
-    b1: float | None = None,
-    direction: Sequence[float] | None = None,
-    k: float | None = None,
-    b: float | None = None,
-    height: float | None = None,
-    share: Given = None,
-) -> Design:
-    """As few springs as links. The mechanism's own springs are replaced.
 
-    Args:
+@dataclass(frozen=True, kw_only=True)
+class NoAuxiliaryOptions(MethodOptions):
+    """What the method no-auxiliary can be asked for.
+
+    Attributes:
         layout: a to d for two loaded links, or ground. By default the first that suits of b, a, c, d; for any other
             number of links ground.
         springs: 2, or 3 with spring k1, of layouts a to d; by default 3 only where mass centre 1 is off the line.
@@ -62,26 +52,49 @@ def design(
         k, b, height: of layout ground: stiffness of the two springs on the last link [N/m], where they are attached [m]
             and how far apart on the ground [m]; two are free.
         share: of layout ground: where the spring of another link is attached, as a share of its length.
+    """
+
+    layout: str | None = option(None, "text", "of two links (Fig. 5), or all springs from the ground", CHOICES)
+    springs: int | None = option(None, "whole", "2, or 3 with k1 as in (14) (default: as few as do), of layouts a to d")
+    k2: Number | None = option(None, "stiffness", "of the spring from the ground to link 2")
+    a2: Number | None = option(None, "length", "its height above the shoulder")
+    b2: Number | None = option(None, "length", "its end on link 2, from the elbow")
+    k12: Number | None = option(None, "stiffness", "of the spring from link 1 to link 2")
+    a12: Number | None = option(None, "length", "its end on link 2, from the elbow")
+    b12: Number | None = option(None, "length", "its end on link 1, from the shoulder")
+    k1: Number | None = option(None, "stiffness", "of the third spring, from the ground to link 1")
+    a1: Number | None = option(None, "length", "its height above the shoulder")
+    b1: Number | None = option(None, "length", "its end on link 1, from the shoulder")
+    direction: Sequence[float] | None = option(None, "number", "x,y,z of link 2 in its frame: where h2 > 0", many=True)
+    k: Number | None = option(None, "stiffness", "layout ground: of the springs on the last link")
+    b: Number | None = option(None, "length", "layout ground: their ends on it, from its joint")
+    height: Number | None = option(None, "length", "layout ground: how far apart they are on the ground")
+    share: Given = option(None, "share", "layout ground: end on another link as a share of its length", each=True)
+
+
+@takes(NoAuxiliaryOptions)
+def design(mechanism: Mechanism, options: NoAuxiliaryOptions) -> Design:
+    """As few springs as links. The mechanism's own springs are replaced.
 
     Raises:
         InputError: a bad value.
         InfeasibleError: no springs of this kind balance it; the message names the condition.
     """
+    layout, springs, direction, share = options.layout, options.springs, options.direction, options.share
     bare = mechanism.with_springs(())
     found = chain(bare)
-    lengths = {"k1": k1, "a1": a1, "b1": b1, "k2": k2, "a2": a2, "b2": b2, "k12": k12, "a12": a12, "b12": b12}
-    of_two = {name: number(name, value, None if name[0] != "k" else True) for name, value in _given(**lengths).items()}
-    of_ground = {name: number(name, value, positive=True) for name, value in _given(k=k, b=b, height=height).items()}
+    of_two = {name: number(name, value, None if name[0] != "k" else True) for name, value in _given(options, OF_TWO)}
+    of_ground = {name: number(name, value, positive=True) for name, value in _given(options, OF_GROUND)}
     size = {link.body: Mounts.of(bare).default_radius(link.body) for link in found.loaded}
     if _grounded(layout, len(found.loaded)):
-        _no_use("layout ground", {**of_two, **_given(springs=springs, direction=direction)})
+        _no_use("layout ground", [*of_two, *dict(_given(options, ("springs", "direction")))])
         made, free = _from_ground(found, of_ground, share, size)
     else:
-        _no_use("a layout of two links", {**of_ground, **_given(share=share)})
+        _no_use("a layout of two links", [*of_ground, *dict(_given(options, ("share",)))])
         if springs not in (None, 2, 3):
             raise InputError(Fault(("springs",), f"must be 2 or 3 with layouts a to d, found {springs}"))
         if springs == 2:
-            _no_use("an arm with two springs", {name: of_two[name] for name in FREE_3 if name in of_two})
+            _no_use("an arm with two springs", [name for name in FREE_3 if name in of_two])
         first, second = found.loaded
         x2, ahead = _direction(found, second, direction)
         arm = TwoLinks(found, x2, (size[first.body], size[second.body]))
@@ -92,12 +105,14 @@ def design(
     return Design.of(bare.with_springs(made), "no-auxiliary", free)
 
 
-def _given(**options: Any) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if value is not None}
+def _given(options: NoAuxiliaryOptions, names: Iterable[str]) -> Iterator[tuple[str, Any]]:
+    for name in names:
+        if getattr(options, name) is not None:
+            yield name, getattr(options, name)
 
 
-def _no_use(what: str, options: Mapping[str, object]) -> None:
-    for name in options:
+def _no_use(what: str, names: Iterable[str]) -> None:
+    for name in names:
         raise InputError(Fault((name,), f"{what} has no such parameter"))
 
 
@@ -152,32 +167,11 @@ def _direction(found: Chain, link: ChainLink, given: Sequence[float] | None) -> 
     return (x2 if x2 @ ahead >= 0 else -x2), (local / np.linalg.norm(local)).tolist()
 
 
-GROUND = "ground"
-CHOICES = (*sorted(LAYOUTS), GROUND)
-SHARE = 0.5
-
 METHOD = Method(
     "no-auxiliary",
     "as few springs as links, from the ground or between the links of an open chain, without auxiliary links",
     "Lenzo (2017), Eqs. (11)-(15)",
     reasons,
     design,
-    {
-        "layout": Parameter("text", "of two links (Fig. 5), or all springs from the ground", choices=CHOICES),
-        "springs": Parameter("whole", "2, or 3 with k1 as in (14) (default: as few as do), of layouts a to d"),
-        "k2": Parameter("stiffness", "of the spring from the ground to link 2"),
-        "a2": Parameter("length", "its height above the shoulder"),
-        "b2": Parameter("length", "its end on link 2, from the elbow"),
-        "k12": Parameter("stiffness", "of the spring from link 1 to link 2"),
-        "a12": Parameter("length", "its end on link 2, from the elbow"),
-        "b12": Parameter("length", "its end on link 1, from the shoulder"),
-        "k1": Parameter("stiffness", "of the third spring, from the ground to link 1"),
-        "a1": Parameter("length", "its height above the shoulder"),
-        "b1": Parameter("length", "its end on link 1, from the shoulder"),
-        "direction": Parameter("number", "x,y,z of link 2 in its frame: where h2 > 0", many=True),
-        "k": Parameter("stiffness", "layout ground: of the springs on the last link"),
-        "b": Parameter("length", "layout ground: their ends on it, from its joint"),
-        "height": Parameter("length", "layout ground: how far apart they are on the ground"),
-        "share": Parameter("share", "layout ground: end on another link as a share of its length", each=True),
-    },
+    NoAuxiliaryOptions,
 )

@@ -22,8 +22,8 @@ from typing import Literal
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring
 from ...errors import InfeasibleError
-from ...spring import Spring
 from ..chain import Chain, ChainLink
 from ..products import Product, fill, show
 

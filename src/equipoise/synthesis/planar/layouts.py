@@ -20,17 +20,21 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any, get_args
 
+import numpy as np
+
 from ...balance import Balance, check
 from ...energy.planar import PlanarArm
 from ...energy.symbols import Angles, SymbolicBlocks, design_equations
 from ...errors import Fault, InputError
 from ...mechanism import Body, Joint, Mechanism
+from ...progress import Progress
 from ...validate import whole_number
-from ..problem import Progress
 from .criteria import Failure, Objective, failures, objections
 from .exclusion import Layout, Leaf, Proof, prove
 from .installing import Solution, solve
 
+MAX_LINKS, MAX_SPRINGS = 10, 12
+MAX_LAYOUTS = 500_000  # candidates of one search: beyond it, hours
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 LENGTH, MASS = 0.2, 1.0  # [m, kg] of every link of the example arm, its mass centre halfway
 
@@ -141,15 +145,12 @@ def search(
         springs: exactly so many.
 
     Raises:
-        InputError: a bad option.
+        InputError: a bad option, or one with more than `MAX_LAYOUTS` candidates.
     """
-    whole_number("n", n, 2)
-    if objective not in OBJECTIVES:
-        raise InputError(Fault(("objective",), f"there is no objective '{objective}'", OBJECTIVES))
-    if springs is not None:
-        whole_number("springs", springs, 1)
-    if not (isfinite(weight) and weight > 0):
-        raise InputError(Fault(("weight",), f"must be a finite number more than 0, found {weight}"))
+    most = candidates(n, objective, springs, weight)
+    if most > MAX_LAYOUTS:
+        message = f"{most:,} layouts would have to be looked at, at most {MAX_LAYOUTS:,} are: take fewer"
+        raise InputError(Fault(("n",), message))
     example = example_arm(n)
     arm = PlanarArm.of(example)
     pruned: dict[str, list[Layout]] = defaultdict(list)
@@ -179,11 +180,41 @@ def search(
     return Search(n, objective, dict(pruned), tuple(proved), tuple(feasible), tuple(left))
 
 
+def candidates(n: int, objective: Objective = "springs", springs: int | None = None, weight: float = 1.0) -> int:
+    """How many layouts a search looks at, at most: it ends with the first cost at which one is feasible.
+
+    Raises:
+        InputError: as `search`, but for the number.
+    """
+    whole_number("n", n, 2, MAX_LINKS)
+    if objective not in OBJECTIVES:
+        raise InputError(Fault(("objective",), f"there is no objective '{objective}'", OBJECTIVES))
+    if springs is not None:
+        whole_number("springs", springs, 1, MAX_SPRINGS)
+    if not (isfinite(weight) and weight > 0):
+        raise InputError(Fault(("weight",), f"must be a finite number more than 0, found {weight}"))
+    cells = [cell for cost in _cells(n, objective, springs, weight).values() for cell in cost]
+    most, farthest = max(size for size, _ in cells), max(joints for _, joints in cells)
+    ways = np.zeros((most + 1, farthest + 1), object)  # by springs and joints, of the pairs so far; whole at any size
+    ways[0, 0] = 1
+    for joints in [k - i for i in range(1, n + 1) for k in range(i + 1, n + 1)]:
+        one_less = ways if objective == "springs" else ways.copy()  # of which a pair may be there again, or not
+        for size in range(1, most + 1):
+            ways[size, joints:] += one_less[size - 1, : farthest + 1 - joints]
+    return sum(int(ways[cell]) for cell in cells)
+
+
 def _by_cost(n: int, objective: Objective, springs: int | None, weight: float) -> Iterator[tuple[float, list[Layout]]]:
     """Layouts of the same cost, the cheapest first, as far as a feasible one is known."""
     repeated = objective == "springs"
+    for cost, cells in sorted(_cells(n, objective, springs, weight).items()):
+        yield cost, sorted(layout for cell in cells for layout in _layouts(n, *cell, repeated))
+
+
+def _cells(n: int, objective: Objective, springs: int | None, weight: float) -> dict[float, list[tuple[int, int]]]:
+    """Cost -> the numbers of springs and joints that have it."""
     pairs = n * (n - 1) // 2
-    most = springs or (n - 1 if repeated else pairs)
+    most = springs or (n - 1 if objective == "springs" else pairs)
     last = inf if springs else _cost(len(default_layout(n)), span(default_layout(n)), objective, weight)
     cells: dict[float, list[tuple[int, int]]] = defaultdict(list)
     for size in range(springs or 1, most + 1):
@@ -191,8 +222,7 @@ def _by_cost(n: int, objective: Objective, springs: int | None, weight: float) -
             cost = _cost(size, joints, objective, weight)
             if cost <= last:
                 cells[cost].append((size, joints))
-    for cost in sorted(cells):
-        yield cost, sorted(layout for cell in cells[cost] for layout in _layouts(n, *cell, repeated))
+    return cells
 
 
 def _cost(size: int, joints: int, objective: Objective, weight: float) -> float:

@@ -9,6 +9,7 @@ given stiffnesses or attachments, a limit on the attachments.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import product
 from math import isinf, log
 from typing import Any
@@ -18,11 +19,12 @@ import numpy as np
 from ...energy.planar import PlanarArm, obstacles
 from ...errors import EquipoiseError, Fault, InfeasibleError, InputError
 from ...mechanism import Mechanism
+from ...progress import Progress
 from ...validate import whole_number
 from ..design import Design
 from ..given import Given, number, numbers
-from ..method import Method, Parameter
-from ..problem import Progress
+from ..method import Method
+from ..options import MethodOptions, Number, option, takes
 from .criteria import failures
 from .exclusion import Layout, prove
 from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
@@ -32,21 +34,11 @@ STOCK = 200  # choices from stock that are tried
 NEAREST = 4  # stiffnesses in stock to choose from, for each spring
 
 
-def design(
-    mechanism: Mechanism,
-    *,
-    layout: Sequence[str] | None = None,
-    limit: float | None = None,
-    stiffness: Given = None,
-    a: Given = None,
-    b: Given = None,
-    stock: Sequence[float] | None = None,
-    seed: int = 0,
-    progress: Progress | None = None,
-) -> Design:
-    """Exact springs for a layout; of the solutions found, the one that stores least. The arm's own springs go.
+@dataclass(frozen=True, kw_only=True)
+class PlanarOptions(MethodOptions):
+    """What the method planar can be asked for.
 
-    Args:
+    Attributes:
         layout: for each spring the two links that it joins: ``13`` or ``1-3``, the ground being link 1, or names of
             bodies, ``world:forearm``. By default 13, 14, .., 1n, 2n: the fewest springs and the smallest span.
         limit: [m] of every attachment from its joint: on the ground the first one, else the joint to the next link for
@@ -56,18 +48,38 @@ def design(
             join the same links. `a` is counted from the joint of the lower link along that link, the ground's upwards;
             `b` from the joint of the upper link along it; negative values lie on the other side.
         stock: the stiffnesses to choose from [N/m].
+        seed: of the random starts.
+    """
+
+    layout: Sequence[str] | None = option(
+        None, "names", "13,14,24: the links of each spring, ground is 1 (default 13,14,..,1n,2n)"
+    )
+    limit: Number | None = option(None, "length", "of attachments from their joints (default: as close as is found)")
+    stiffness: Given = option(None, "stiffness", "of a spring: stiffness.13, stiffness.14_1", each=True)
+    a: Given = option(
+        None, "length", "of a spring, along its lower link from the far joint; the ground's is up", each=True
+    )
+    b: Given = option(None, "length", "of a spring, along its upper link from the near joint", each=True)
+    stock: Sequence[Number] | None = option(None, "stiffness", "K,K,...: stiffnesses to choose from", many=True)
+    seed: int = option(0, "whole", "of the random starts (default 0)")
+
+
+@takes(PlanarOptions)
+def design(mechanism: Mechanism, options: PlanarOptions) -> Design:
+    """Exact springs for a layout; of the solutions found, the one that stores least. The arm's own springs go.
 
     Raises:
         InfeasibleError: the layout balances no such arm, or no springs were found; the message says which.
         InputError: a bad option.  UnsupportedError: not a planar serial arm.
     """
+    seed, progress = options.seed, options.progress
     whole_number("seed", seed, 0)
     bare = mechanism.with_springs(())
     arm = PlanarArm.of(bare)
-    chosen = default_layout(arm.n) if layout is None else _read(layout, arm)
-    if limit is not None:
-        number("limit", limit, positive=True)
-    fixed = _fixed(labels(chosen), stiffness, a, b)
+    chosen = default_layout(arm.n) if options.layout is None else _read(options.layout, arm)
+    limit = None if options.limit is None else number("limit", options.limit, positive=True)
+    fixed = _fixed(labels(chosen), options.stiffness, options.a, options.b)
+    stock = None if options.stock is None else [number("stock", k, positive=True) for k in options.stock]
     why = reason(arm, chosen)
     if why:
         raise InfeasibleError(f"springs {name(chosen)} balance no such arm: {why}")
@@ -75,7 +87,7 @@ def design(
         progress("solving the design equations", 0.0)
     found = solve(arm, chosen, limit, fixed, seed)
     if found is not None and stock is not None:
-        found = _from_stock(found, [number("stock", k, positive=True) for k in stock], seed, progress)
+        found = _from_stock(found, stock, seed, progress)
     if found is None:
         raise InfeasibleError(_none(chosen, limit, fixed, stock))
     designed = Design.of(bare.with_springs(arm.springs(found.springs)), "planar", _free(found, stock, seed))
@@ -185,13 +197,5 @@ METHOD = Method(
     "Lee and Chen (2014), Eqs. (7)-(8), (18), (23), (29)",
     obstacles,
     design,
-    {
-        "layout": Parameter("names", "13,14,24: the links of each spring, ground is 1 (default 13,14,..,1n,2n)"),
-        "limit": Parameter("length", "of attachments from their joints (default: as close as is found)"),
-        "stiffness": Parameter("stiffness", "of a spring: stiffness.13, stiffness.14_1", each=True),
-        "a": Parameter("length", "of a spring, along its lower link from the far joint; the ground's is up", each=True),
-        "b": Parameter("length", "of a spring, along its upper link from the near joint", each=True),
-        "stock": Parameter("stiffness", "K,K,...: stiffnesses to choose from", many=True),
-        "seed": Parameter("whole", "of the random starts (default 0)"),
-    },
+    PlanarOptions,
 )

@@ -10,6 +10,7 @@ the first links, which only turn about the vertical, carry the foot of the chain
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,33 +19,20 @@ from ...errors import Fault, InputError, nearest
 from ...mechanism import Mechanism
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes, vectors
-from ..method import Method, Parameter
+from ..method import Method
 from ..mounts import Mounts
+from ..options import MethodOptions, Number, option, takes
 from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from .parallelograms import Builder, Module, mobility
 
 
-def design(
-    mechanism: Mechanism,
-    *,
-    stiffness: Given = None,
-    l_CA: Given = None,
-    l_CB: Given = None,
-    centre: Given = None,
-    height: float | None = None,
-    auxiliary: Given = 0.0,
-    auxiliary_mass: Given = None,
-    auxiliary_com: Given = None,
-    pseudobase: Given = 0.0,
-    planar: Sequence[str] | None = None,
-    real: bool = False,
-) -> Design:
-    """One spring for each link on whose moment gravity does work. The mechanism's own springs are replaced.
+@dataclass(frozen=True, kw_only=True)
+class PseudobaseOptions(MethodOptions):
+    """What the method pseudobase can be asked for. All but `height` and `planar` may differ from link to link.
 
-    All but `height` and `planar` may differ from link to link. A link is named by the body that stands for it, in
-    whose frame its points are given (see `Segment`).
+    A link is named by the body that stands for it, in whose frame its points are given (see `Segment`).
 
-    Args:
+    Attributes:
         stiffness, l_CA, l_CB: of a link's spring [N/m, m, m]: at most two, the third follows from Eq. (16). By default
             both lengths are half the link's size, or equal where only the stiffness is given.
         centre: C_i [m]; by default off the joint's axis by half the link's size, on the side of its moment.
@@ -55,6 +43,28 @@ def design(
         pseudobase: mass of a pseudobase [kg].
         planar: links whose parallelogram is a planar four-bar; by default those whose axis stays horizontal.
         real: hinges, ball joints and loops in the place of parallelogram joints.
+    """
+
+    stiffness: Given = option(None, "stiffness", "of a link's spring", each=True)
+    l_CA: Given = option(None, "length", "from C up to the spring's end on the pseudobase", each=True)
+    l_CB: Given = option(None, "length", "from C to its end on the link; two of the three at most", each=True)
+    centre: Given = option(None, "length", "x,y,z of C in the link's frame", each=True, many=True)
+    height: Number | None = option(
+        None, "length", "of the auxiliary chain above the arm (default a tenth of the reach)"
+    )
+    auxiliary: Given = option(0.0, "share", "mass of an auxiliary link as a share of its link's, such as 5%", each=True)
+    auxiliary_mass: Given = option(None, "mass", "the same, in kg in place of a share", each=True)
+    auxiliary_com: Given = option(None, "length", "x,y,z in the link's frame (default its com)", each=True, many=True)
+    pseudobase: Given = option(0.0, "mass", "of a pseudobase (default 0)", each=True)
+    planar: Sequence[str] | None = option(
+        None, "names", "A,B,...: links with a planar four-bar (default: all whose axis stays level)"
+    )
+    real: bool = option(False, "flag", "hinges, ball joints and loops in place of parallelogram joints (default no)")
+
+
+@takes(PseudobaseOptions)
+def design(mechanism: Mechanism, options: PseudobaseOptions) -> Design:
+    """One spring for each link on whose moment gravity does work. The mechanism's own springs are replaced.
 
     Raises:
         InputError: a bad value.
@@ -66,13 +76,13 @@ def design(
     chain = _chain(links, primary, unit)
     names = [links[i].name for i in chain]
     mounts = Mounts.of(bare)
-    height = mounts.reach / 10 if height is None else number("height", height, positive=True)
-    flat = _planar(links, chain, planar)
-    centres = vectors("centre", centre, names)
-    shares = numbers("auxiliary", auxiliary, names, positive=False)
-    weights = numbers("auxiliary_mass", auxiliary_mass, names, positive=False)
-    coms = vectors("auxiliary_com", auxiliary_com, names)
-    couplers = numbers("pseudobase", pseudobase, names, positive=False)
+    height = mounts.reach / 10 if options.height is None else number("height", options.height, positive=True)
+    flat = _planar(links, chain, options.planar)
+    centres = vectors("centre", options.centre, names)
+    shares = numbers("auxiliary", options.auxiliary, names, positive=False)
+    weights = numbers("auxiliary_mass", options.auxiliary_mass, names, positive=False)
+    coms = vectors("auxiliary_com", options.auxiliary_com, names)
+    couplers = numbers("pseudobase", options.pseudobase, names, positive=False)
 
     modules: dict[int, Module] = {}
     for i in chain:
@@ -96,8 +106,8 @@ def design(
     g = float(np.linalg.norm(bare.gravity))
     sizes = spring_sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},  # (16)
                          {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
-                         stiffness, l_CA=l_CA, l_CB=l_CB)  # fmt: skip
-    balanced = Builder(bare, links, height, real).build(modules, whole, sprung, sizes)
+                         options.stiffness, l_CA=options.l_CA, l_CB=options.l_CB)  # fmt: skip
+    balanced = Builder(bare, links, height, options.real).build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
         "stiffness": {name: K for name, (K, _, _) in sizes.items()},
@@ -181,17 +191,5 @@ METHOD = Method(
     "Lin, Shieh and Chen (2010), Eqs. (7)-(8), (13)-(16), (24)-(25)",
     applies,
     design,
-    {
-        "stiffness": Parameter("stiffness", "of a link's spring", each=True),
-        "l_CA": Parameter("length", "from C up to the spring's end on the pseudobase", each=True),
-        "l_CB": Parameter("length", "from C to its end on the link; two of the three at most", each=True),
-        "centre": Parameter("length", "x,y,z of C in the link's frame", each=True, many=True),
-        "height": Parameter("length", "of the auxiliary chain above the arm (default a tenth of the reach)"),
-        "auxiliary": Parameter("share", "mass of an auxiliary link as a share of its link's, such as 5%", each=True),
-        "auxiliary_mass": Parameter("mass", "the same, in kg in place of a share", each=True),
-        "auxiliary_com": Parameter("length", "x,y,z in the link's frame (default its com)", each=True, many=True),
-        "pseudobase": Parameter("mass", "of a pseudobase (default 0)", each=True),
-        "planar": Parameter("names", "A,B,...: links with a planar four-bar (default: all whose axis stays level)"),
-        "real": Parameter("flag", "hinges, ball joints and loops in place of parallelogram joints (default no)"),
-    },
+    PseudobaseOptions,
 )

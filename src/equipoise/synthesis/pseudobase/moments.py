@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...energy.potential import lumped_masses
 from ...kinematics import Tree
 from ...kinematics.groups import places
+from ...masses import lumped_masses
 from ...mechanism import Joint, Mechanism
 
 NOTHING = 1e-12  # relative: what is nothing but rounding

@@ -18,12 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
+from ...elements import Spring, Vec3
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import sample
 from ...mechanism import Body, Joint, Loop, Mechanism
 from ...rotation import to_rpy
-from ...spring import Spring, Vec3
 from .moments import Lump, Moment, Segment, upwards
 
 POSES = 64  # of which the one with the widest parallelograms is where real joints are assembled
@@ -86,7 +86,7 @@ class Builder:
         auxiliaries: dict[int, str] = {}
         # ball joints are zero where it is assembled: there their three angles are far from being two
         q = self._widest(modules) if self.real else np.zeros(self._tree.n)
-        assembly = dict(zip(self._tree.coordinates, q.tolist(), strict=True))
+        assembly: dict[str, float] = dict(zip(self._tree.coordinates, q.tolist(), strict=True))
         R = self._tree.poses(q[None]).R[0]
         for i, module in modules.items():
             link = self.links[i]

@@ -1,0 +1,36 @@
+"""The moment matrix of the springs between two bodies: its form as a vector, and its cone."""
+
+import numpy as np
+import pytest
+
+from equipoise.synthesis.region import Region
+from equipoise.synthesis.spring_block import SpringBlock, smat, svec
+
+BALL_AND_BOX = SpringBlock("world", "arm", Region.ball(0.2, (0, 0, 0.1)), Region.box((0.1, 0.0, 0.3), (0.2, 0, 0)))
+
+
+def test_svec_keeps_the_inner_product_and_smat_undoes_it():
+    A, B = np.random.default_rng(0).normal(size=(2, 5, 7, 7))
+    A, B = A + A.swapaxes(1, 2), B + B.swapaxes(1, 2)
+    assert np.einsum("ni,ni->n", svec(A), svec(B)) == pytest.approx(np.einsum("nij,nij->n", A, B))
+    assert np.allclose(smat(svec(A)), A)
+
+
+def test_slopes_are_central_differences():
+    u = np.random.default_rng(1).uniform(-1, 1, (4, 6))
+    slopes = BALL_AND_BOX.slopes(u)
+    for i, h in enumerate(1e-6 * np.eye(6)):
+        difference = (BALL_AND_BOX.part(u + h) - BALL_AND_BOX.part(u - h)) / 2e-6
+        np.testing.assert_allclose(slopes[:, i], difference, atol=1e-9)  # a quadratic form: nothing but rounding
+
+
+def test_parts_in_their_regions_lie_in_the_cones_and_others_do_not():
+    semidefinite, limits = BALL_AND_BOX.cones()
+    u = BALL_AND_BOX.project(np.random.default_rng(2).uniform(-3, 3, (50, 6)))
+    inside = BALL_AND_BOX.part(u).sum(axis=0)
+    assert np.linalg.eigvalsh(smat(semidefinite.F @ inside)).min() > 0
+    assert (limits.F @ inside >= 0).all()
+    for far in ([1.1, 0, 0, 0, 0, 0], [0.8, 0.8, 0, 0, 0, 0], [0, 0, 0, 1.1, 0, 0], [0, 0, 0, 0, 0, -1.1]):
+        assert (limits.F @ BALL_AND_BOX.part(np.array([far]))[0] < 0).sum() == 1
+    corner = BALL_AND_BOX.part(np.array([[0.0, 0, 0, 1, 1, 1]]))[0]
+    assert (limits.F @ corner >= 0).all()  # a box, not a ball
