@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import equipoise as eq
-from equipoise.errors import EquipoiseWarning
+from equipoise.model.errors import EquipoiseWarning
 
 UR5 = Path(__file__).parents[1] / "examples" / "robots" / "ur5.urdf"
 LINKS = ("world", "shoulder_link", "upper_arm_link", "forearm_link", "wrist_1_link", "wrist_2_link", "wrist_3_link")

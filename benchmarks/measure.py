@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from equipoise.arrays import Array
 from equipoise.energy.kernel.generated import Generated
 from equipoise.energy.kernel.trace import Trace, Value
+from equipoise.model.arrays import Array
 
 
 def seconds(*tasks: Callable[[], object], repeat: int = 7, best: bool = False) -> list[float]:

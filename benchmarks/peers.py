@@ -15,7 +15,7 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.kinematics import Tree
-from equipoise.rotation import to_quaternion
+from equipoise.model.rotation import to_quaternion
 
 LEAN = """
 typedef void (*call)(const void *, void *);

@@ -13,14 +13,14 @@ from measure import seconds
 
 import equipoise as eq
 from equipoise.energy import FourierEnergy, Potential
-from equipoise.errors import EquipoiseWarning
-from equipoise.hardware.choice import choose
-from equipoise.hardware.made_up import made_up_catalogue
+from equipoise.hardware.stock.made_up import made_up_catalogue
+from equipoise.hardware.stock.selection import choose
+from equipoise.model.errors import EquipoiseWarning
 from equipoise.robust import tolerance
 from equipoise.synthesis import Problem
-from equipoise.synthesis.bound import least_rms
-from equipoise.synthesis.gram import Gram, build
-from equipoise.synthesis.spring_block import smat
+from equipoise.synthesis.convex.least_squares_form import Gram, build
+from equipoise.synthesis.convex.semidefinite import least_rms
+from equipoise.synthesis.convex.spring_block import smat
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 

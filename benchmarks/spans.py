@@ -6,11 +6,11 @@ import warnings
 from pathlib import Path
 
 import equipoise as eq
-from equipoise.errors import EquipoiseWarning
+from equipoise.model.errors import EquipoiseWarning
 from equipoise.synthesis import Problem
-from equipoise.synthesis.bound import least_rms
-from equipoise.synthesis.gram import build
-from equipoise.synthesis.search import FEASIBLE
+from equipoise.synthesis.convex.few_springs import FEASIBLE
+from equipoise.synthesis.convex.least_squares_form import build
+from equipoise.synthesis.convex.semidefinite import least_rms
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 CASES = {"UR5": ("ur5", 0.15), "UR10": ("ur10", 0.2), "Panda": ("panda", 0.15), "xArm7": ("xarm7", 0.15)}

@@ -11,8 +11,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import test_robot_files as files
 from engine import Engine
-from equipoise.energy.potential import Potential
 
+from equipoise.energy import Potential
 from equipoise.kinematics import Tree
 from equipoise.kinematics.sampling import sample
 

@@ -17,7 +17,6 @@ import grimp
 SOURCE, PACKAGE = Path(__file__).parents[1] / "src", "equipoise"
 ALLOWED = {
     ("equipoise.kinematics.tree", "equipoise.kinematics.linkage"): "`Tree.of` gives the mechanism with loops its own",
-    ("equipoise.notebook", "equipoise.report.notebook"): "values show themselves in a notebook, when it asks",
 }
 """Imports (from, to) that may close a circle, and why they must."""
 

@@ -13,7 +13,7 @@ import numpy as np
 import equipoise as eq
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
-from equipoise.rotation import about, from_quaternion, from_rpy, to_quaternion
+from equipoise.model.rotation import about, from_quaternion, from_rpy, to_quaternion
 
 STEP = 0.01  # [rad or m] between the seven poses of a derivative of sixth order
 WEIGHTS = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
@@ -29,7 +29,7 @@ class Engine:
         self.mechanism, self.tree = mechanism, Tree.of(mechanism)
         self.open = self.tree.open if isinstance(self.tree, Linkage) else self.tree
         self.joints = {joint.name: joint for joint in mechanism.joints}
-        self.row = {name: row for row, name in enumerate(self.tree.motions)}
+        self.row: dict[str, int] = {name: row for row, name in enumerate(self.tree.motions)}
 
     def qpos(self, q: np.ndarray) -> np.ndarray:
         """(N, nq) the engine's coordinates where those of the spanning tree are `q` (N, open.n)."""

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from zoo import LIFT, hinge
 
-from equipoise.elements import Spring
-from equipoise.mechanism import Body, Joint, Loop, Mechanism
+from equipoise.model.elements import Spring
+from equipoise.model.mechanism import Body, Joint, Loop, Mechanism
 
 Y = (0.0, 1.0, 0.0)
 

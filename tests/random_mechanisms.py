@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
-from equipoise.elements import Spring, TorsionSpring, Vec3
-from equipoise.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass
+from equipoise.model.elements import Spring, TorsionSpring, Vec3
+from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass
 
 RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
 

@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 
 import equipoise as eq
-from equipoise.energy.planar import Installation, PlanarArm
-from equipoise.errors import EquipoiseWarning
+from equipoise.model.errors import EquipoiseWarning
+from equipoise.synthesis.planar.arm import Installation, PlanarArm
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 

@@ -8,8 +8,8 @@ from unicodedata import category
 
 from hypothesis import strategies as st
 
-from equipoise.elements import Spring
-from equipoise.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from equipoise.model.elements import Spring
+from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 ODD = [
     "yes",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robots import lee_chen_springs
 
 import equipoise as eq
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 from equipoise.robust import adjust
 from equipoise.synthesis.payload import Payload
 

@@ -12,8 +12,8 @@ from robots import lee_chen, lee_chen_springs
 from zoo import pendulum
 
 import equipoise as eq
-from equipoise.errors import InputError
 from equipoise.kinematics import Tree
+from equipoise.model.errors import InputError
 from equipoise.report import attachments
 from equipoise.report.attachments import LAYERS, to_text
 from equipoise.report.poses import choose

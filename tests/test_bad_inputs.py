@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from equipoise import io
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 
 FOLDER = Path(__file__).parent / "bad_inputs"
 FILES = sorted(FOLDER.glob("*.yaml"))

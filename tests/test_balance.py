@@ -13,9 +13,9 @@ from test_kinematics import coupled
 from zoo import PENDULUM_K, ZOO, hinge, irrational_pair, pendulum, to_ground, vertical_slide
 
 from equipoise import Balance, check
-from equipoise.elements import Spring
-from equipoise.errors import InputError
-from equipoise.mechanism import Body, Joint, Mechanism, Workspace
+from equipoise.model.elements import Spring
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Body, Joint, Mechanism, Workspace
 
 
 @pytest.mark.parametrize("name", ZOO)

@@ -22,12 +22,12 @@ from zoo import counterweight, exact_pendulum
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
 from equipoise.io import mjcf
+from equipoise.model.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
 from equipoise.reproduce.cho2012 import shoulder
 from equipoise.synthesis import METHODS
+from equipoise.synthesis.arms.shoulder import find
 from equipoise.synthesis.bevel import differential as d
-from equipoise.synthesis.bevel.shoulder import find
 
 THETA = np.random.default_rng(0).uniform(-pi, pi, (200, 2))
 WEIGHT, B, H, K = 10.0, 0.05, 0.07, 900.0

@@ -7,10 +7,10 @@ import pytest
 from robots import lee_chen, robot
 
 import equipoise as eq
-from equipoise.energy.blocks import StiffnessBlocks
 from equipoise.energy.evaluate import Potential
-from equipoise.energy.planar import Installation, PlanarArm, obstacles
-from equipoise.errors import UnsupportedError
+from equipoise.model.errors import UnsupportedError
+from equipoise.synthesis.planar.arm import Installation, PlanarArm, obstacles
+from equipoise.synthesis.planar.stiffness_blocks import StiffnessBlocks
 
 ARM = Path(__file__).parents[1] / "examples" / "mechanisms" / "lee_chen_arm.yaml"
 # Lee and Chen (2014), Table 5: i, k, stiffness [N/m], a [m], b [m], alpha [deg], beta [deg]

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from robots import lee_chen, planar_arm, robot
 
-from equipoise.synthesis import gram
-from equipoise.synthesis.bound import least_rms
-from equipoise.synthesis.minimax import Peak
-from equipoise.synthesis.polish import Parts, residual
+from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex.peak import Peak
+from equipoise.synthesis.convex.polish import Parts, residual
+from equipoise.synthesis.convex.semidefinite import least_rms
+from equipoise.synthesis.convex.spring_block import smat
 from equipoise.synthesis.problem import Problem
-from equipoise.synthesis.spring_block import smat
 
 CASES = [
     (lee_chen(), {"span": 1}),

@@ -14,7 +14,7 @@ from zoo import counterweight, gantry, lenzo_revolute, lenzo_spherical, mirrored
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.synthesis.chain import chain, reasons
+from equipoise.synthesis.arms.chain import chain, reasons
 
 
 def random_chain(seed: int, links: int, kinds: tuple[str, ...], on_line: bool = False) -> eq.Mechanism:

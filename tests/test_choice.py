@@ -9,12 +9,12 @@ import pytest
 from robots import lee_chen_springs
 
 import equipoise as eq
-from equipoise.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.hardware import Stock, choose
-from equipoise.hardware.choice import shortest
-from equipoise.hardware.made_up import made_up_catalogue
-from equipoise.hardware.movable import Movable, Travel
-from equipoise.hardware.relaxation import _solver_speaks_to_stderr
+from equipoise.hardware.stock.made_up import made_up_catalogue
+from equipoise.hardware.stock.movable import Movable, Travel
+from equipoise.hardware.stock.relaxation import _solver_speaks_to_stderr
+from equipoise.hardware.stock.selection import shortest
+from equipoise.model.errors import InfeasibleError, InputError, UnsupportedError
 
 R2 = R3 = 0.180
 G2, G3, G4 = ((0.5 * 0.848 + 0.848 + 1.330) * 9.81, (0.5 * 0.848 + 1.330) * 9.81, 0.060 * 1.330 * 9.81)

@@ -9,7 +9,7 @@ import zoo
 
 import equipoise as eq
 from equipoise.clearance import clearance
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 
 
 def test_the_distance_to_a_post_in_closed_form():

@@ -10,12 +10,12 @@ from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.energy import Potential
-from equipoise.errors import InfeasibleError, InputError
 from equipoise.kinematics import Tree, sample
+from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.synthesis import Problem, Region, by_name
-from equipoise.synthesis.bound import least_rms
-from equipoise.synthesis.gram import build
-from equipoise.synthesis.search import FEASIBLE, Search
+from equipoise.synthesis.convex.few_springs import FEASIBLE, Search
+from equipoise.synthesis.convex.least_squares_form import build
+from equipoise.synthesis.convex.semidefinite import least_rms
 
 
 def within(design: eq.Design, radius: float, box: bool) -> bool:

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
-from equipoise.coordinate import Coordinate, Slide
 from equipoise.kinematics import Tree
-from equipoise.units import SI_UNITS
+from equipoise.model.coordinate import Coordinate, Slide
+from equipoise.model.units import SI_UNITS
 
 SOURCE = Path(eq.__file__).parent
 

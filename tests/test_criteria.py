@@ -8,7 +8,7 @@ from robots import lee_chen
 from test_exclusion import pairs
 from test_planar import crooked
 
-from equipoise.energy.planar import Installation, PlanarArm
+from equipoise.synthesis.planar.arm import Installation, PlanarArm
 from equipoise.synthesis.planar.criteria import failures, objections, sign_failures
 from equipoise.synthesis.planar.exclusion import prove
 from equipoise.synthesis.planar.installing import Equations, solve

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
-from equipoise.mechanism import Mechanism
+from equipoise.model.errors import InputError, UnsupportedError
+from equipoise.model.mechanism import Mechanism
 from equipoise.synthesis import design
 from equipoise.synthesis.delta.legs import NotDelta, delta_legs
 from equipoise.synthesis.delta.method import full, one_per_leg

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from strategies import dh_rows
 
 from equipoise import io
-from equipoise.errors import InputError
 from equipoise.io import yaml
-from equipoise.mechanism import Joint, Mechanism
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Joint, Mechanism
 
 
 def read(tmp_path: Path, text: str) -> Mechanism:

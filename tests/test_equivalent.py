@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from robots import lee_chen
 
 import equipoise as eq
-from equipoise.energy.blocks import StiffnessBlocks
-from equipoise.energy.equivalent import exchanged, resized, rotated, turned
-from equipoise.energy.planar import Installation, PlanarArm
-from equipoise.errors import InfeasibleError, UnsupportedError
+from equipoise.model.errors import InfeasibleError, UnsupportedError
+from equipoise.synthesis.planar.arm import Installation, PlanarArm
+from equipoise.synthesis.planar.equivalent import exchanged, resized, rotated, turned
 from equipoise.synthesis.planar.installing import Solution, solve
+from equipoise.synthesis.planar.stiffness_blocks import StiffnessBlocks
 
 ARM = PlanarArm.of(lee_chen())
 lengths = st.floats(0.02, 0.5)

@@ -13,12 +13,12 @@ import typer
 from zoo import pendulum
 
 import equipoise as eq
-from equipoise import errors
 from equipoise.energy import NoFourierForm, Potential
 from equipoise.energy.kernel import Kernel
-from equipoise.errors import EquipoiseError, InputError, UnsupportedError
+from equipoise.model import errors
+from equipoise.model.errors import EquipoiseError, InputError, UnsupportedError
+from equipoise.model.units import quantity, share, to_si
 from equipoise.synthesis.delta.legs import NotDelta
-from equipoise.units import quantity, share, to_si
 
 SOURCE = Path(eq.__file__).parent
 PROTOCOLS = {

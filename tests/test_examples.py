@@ -14,7 +14,7 @@ from zoo import ZOO
 from equipoise import check, load
 from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree, sample
-from equipoise.mechanism import Mechanism
+from equipoise.model.mechanism import Mechanism
 from equipoise.report.figure import save_figure
 from equipoise.synthesis import design
 

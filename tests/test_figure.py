@@ -11,10 +11,10 @@ from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.balance import check
-from equipoise.coordinate import Coordinate
-from equipoise.errors import InputError
 from equipoise.io import files
 from equipoise.kinematics import Tree, sample
+from equipoise.model.coordinate import Coordinate
+from equipoise.model.errors import InputError
 from equipoise.report import loads, style
 from equipoise.report.arm import window, zigzag
 from equipoise.report.figure import save_figure

@@ -9,9 +9,9 @@ import sys
 import pytest
 
 from equipoise import io
-from equipoise.errors import InputError
 from equipoise.io import files
-from equipoise.mechanism import Mechanism
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Mechanism
 
 
 def test_write_replaces_and_keeps_the_permissions(tmp_path):

@@ -12,11 +12,11 @@ from scipy.spatial.transform import Rotation
 from test_potential import in_another_world, relabelled, swapped_ends
 from zoo import EXACT, LIFT, PENDULUM_K, ZOO, geared_pair, hinge, pendulum, to_ground, vertical_slide
 
-from equipoise.elements import Spring
 from equipoise.energy import FourierEnergy, NoFourierForm, Potential
 from equipoise.kinematics import Tree
 from equipoise.kinematics.sampling import bounds
-from equipoise.mechanism import Body, Coupling, Joint, Mechanism
+from equipoise.model.elements import Spring
+from equipoise.model.mechanism import Body, Coupling, Joint, Mechanism
 
 
 def agrees(m: Mechanism, seed: int, max_terms: int = 20_000) -> bool:

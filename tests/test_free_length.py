@@ -14,10 +14,10 @@ import zoo
 from robots import robot
 
 import equipoise as eq
-from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis.fit import WIDTH, Fit
-from equipoise.synthesis.free_length import ordinary
+from equipoise.model.errors import InputError
+from equipoise.synthesis.convex.ordinary import ordinary
+from equipoise.synthesis.convex.ordinary_fit import WIDTH, Fit
 
 MGL = 2 * zoo.G * 0.3
 

@@ -242,7 +242,7 @@ def test_a_message_that_is_too_long_ends_the_connection(viewer, address):
 def test_a_viser_that_starts_otherwise_is_not_served(monkeypatch, tmp_path):
     from types import SimpleNamespace
 
-    from equipoise.errors import InputError
+    from equipoise.model.errors import InputError
     from equipoise.viewer import gate
 
     stopped: list[bool] = []

@@ -9,8 +9,8 @@ from robots import lee_chen, planar_arm, robot
 import equipoise as eq
 from equipoise.energy import Potential
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis import gram
-from equipoise.synthesis.polish import Parts, residual
+from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex.polish import Parts, residual
 from equipoise.synthesis.problem import Problem, Region
 
 

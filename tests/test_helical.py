@@ -8,12 +8,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from equipoise.errors import InputError
-from equipoise.hardware import WIRES, CompressionSpring, ExtensionSpring, Limits, wire
-from equipoise.hardware.compression import least_free_length
-from equipoise.hardware.extension import LOOP
-from equipoise.hardware.helical import Helical, coils_for
-from equipoise.hardware.limits import SOURCES
+from equipoise.hardware import WIRES, CompressionSpring, ExtensionSpring, Limits
+from equipoise.hardware.sizing import wire
+from equipoise.hardware.sizing.compression import least_free_length
+from equipoise.hardware.sizing.extension import LOOP
+from equipoise.hardware.sizing.helical import Helical, coils_for
+from equipoise.hardware.sizing.limits import SOURCES
+from equipoise.model.errors import InputError
 
 MM, MPA = 1e-3, 1e6
 sizes = st.tuples(st.floats(0.5, 8), st.floats(4, 20), st.floats(3, 100))  # d [mm], w, n

@@ -24,9 +24,9 @@ from equipoise.energy.kernel import Kernel
 from equipoise.energy.kernel.generated import Generated
 from equipoise.energy.kernel.kernel import CACHE, CHUNK, LINE, TIERS
 from equipoise.energy.kernel.trace import Trace
-from equipoise.errors import UnsupportedError
-from equipoise.masses import lumped_masses
-from equipoise.mechanism import Mechanism
+from equipoise.model.errors import UnsupportedError
+from equipoise.model.masses import lumped_masses
+from equipoise.model.mechanism import Mechanism
 
 ROUNDING = 1e-13
 FAR = 1e6  # [rad]

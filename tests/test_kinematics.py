@@ -10,10 +10,10 @@ from random_mechanisms import random_mechanism, random_poses
 from scipy.spatial.transform import Rotation
 from zoo import ZOO, geared_pair
 
-from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.sampling import bounds, inside
-from equipoise.mechanism import Body, Coupling, Joint, Mechanism
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Body, Coupling, Joint, Mechanism
 
 SlowPoses = dict[str, tuple[np.ndarray, np.ndarray]]
 

@@ -10,7 +10,7 @@ import pytest
 from test_exclusion import pairs
 
 import equipoise as eq
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 from equipoise.synthesis.planar.criteria import failures, sign_failures
 from equipoise.synthesis.planar.exclusion import prove, verify
 from equipoise.synthesis.planar.layouts import Search, _layouts, example_arm, name, search, span

@@ -27,11 +27,11 @@ from scipy.spatial.transform import Rotation
 
 from equipoise.balance import check
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.branch import Branch, Status
 from equipoise.kinematics.linkage import Linkage
-from equipoise.mechanism import Loop, Mechanism
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Loop, Mechanism
 
 STEP = 1e-6  # [rad or m] of central differences
 

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from equipoise.elements import Spring
-from equipoise.errors import EquipoiseWarning, UnsupportedError
 from equipoise.io import mjcf, urdf
-from equipoise.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass
+from equipoise.model.elements import Spring
+from equipoise.model.errors import EquipoiseWarning, UnsupportedError
+from equipoise.model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 NAMES = ("ur5", "ur10", "panda", "xarm7", "human")

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from engine import Engine
-from equipoise.energy.potential import Potential
 from random_models import RandomModel
 
 import equipoise as eq
-from equipoise.errors import EquipoiseWarning, InputError, SlipWarning
+from equipoise.energy import Potential
 from equipoise.kinematics import Tree
 from equipoise.kinematics.sampling import sample
+from equipoise.model.errors import EquipoiseWarning, InputError, SlipWarning
 
 
 def outcome(path: Path) -> str:

@@ -20,12 +20,12 @@ from zoo import ZOO, exact_pendulum
 import equipoise as eq
 from equipoise.cli.export import assembled
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
-from equipoise.mechanism import Capsule
+from equipoise.model.errors import EquipoiseWarning, InputError, UnsupportedError
+from equipoise.model.mechanism import Capsule
 
 EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 
@@ -207,8 +207,8 @@ def test_equalities(tmp_path):
         ("", spring('stiffness="100" springlength="0 0.2"'), "tendon 's' is slack from 0 to 0.2 m"),
         (f'<body name="hand"><joint name="w"/>{ONE_KG}</body>',
          '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
-        ("", '<tendon><fixed name="f" stiffness="3"><joint joint="shoulder" coef="2"/></fixed></tendon>',
-         "tendon 'f' is a spring that does not run straight between two sites"),
+        ("", '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><site site="hook"/>'
+         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring that does not run straight"),
     ],
 )  # fmt: skip
 def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):
@@ -258,8 +258,10 @@ def spoken(folder: Path, *arguments: str, base: str | None = None) -> tuple[eq.M
 @pytest.mark.parametrize(
     ("inside", "more", "message"),
     [
-        (f'\n<body name="hand"><joint name="w" stiffness="3"/>{ONE_KG}</body>', "",
-         "joint 'w' (line 7): a joint's spring (stiffness) is left out"),
+        (f'\n<body name="hand"><joint name="w" type="slide" stiffness="3"/>{ONE_KG}</body>', "",
+         "joint 'w' (line 7): the spring (stiffness) of a joint that is no hinge is left out"),
+        (f'<body name="hand"><joint name="w" stiffness="3 1"/>{ONE_KG}</body>', "",
+         "joint 'w' (line 6): what is curved in a joint's spring"),
         (f'\n<body name="hand" gravcomp="1"><joint/>{ONE_KG}</body>', "",
          "body 'hand' (line 7): gravity compensation (gravcomp) is left out"),
         ("", '<option wind="1 0 0" density="1.2"/>', "<option wind>: the force of wind is left out"),

@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree
 from equipoise.reproduce.lin2010 import TABLE_2, arm
-from equipoise.synthesis.pseudobase.moments import moments, segments, slide_faults
+from equipoise.synthesis.arms.moments import moments, segments, slide_faults
 
 UP = (0.0, 0.0, 1.0)
 R = {2: (-0.4, 0, 0), 3: (0, 0, 0), 4: (0, 0.5, 0), 5: (0, 0, 0), 6: (0, 0, -0.27)}  # r_i of Table 2 [m]

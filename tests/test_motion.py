@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from equipoise.errors import InputError
 from equipoise.kinematics.motion import Move, follow
+from equipoise.model.errors import InputError
 
 
 def test_the_cubic_is_that_of_lin2010():

@@ -13,9 +13,9 @@ from test_chain import random_chain
 from zoo import H1, H2, L1, M1, M2, G, exact_pendulum, lenzo_revolute, lenzo_spherical
 
 import equipoise as eq
-from equipoise.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.kinematics import Tree
-from equipoise.synthesis.chain import chain
+from equipoise.model.errors import InfeasibleError, InputError, UnsupportedError
+from equipoise.synthesis.arms.chain import chain
 from equipoise.synthesis.no_auxiliary.from_ground import fewest_springs
 
 LIFT = G * (M1 * H1 / L1 + M2)  # [N] k2 a2 of the arm of the zoo

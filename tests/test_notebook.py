@@ -13,7 +13,7 @@ from robots import lee_chen
 from zoo import ZOO, pendulum
 
 import equipoise as eq
-from equipoise.notebook import Shown
+from equipoise.model.notebook import Shown
 from equipoise.report.schematic import to_text
 
 PENDULUM = Path(__file__).parents[1] / "examples" / "mechanisms" / "pendulum.yaml"

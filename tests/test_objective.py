@@ -10,9 +10,9 @@ from robots import robot
 from test_gram import some_springs, torque_of
 
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis import gram
-from equipoise.synthesis.objective import Quadratic, mean_square
-from equipoise.synthesis.polish import Parts
+from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex.mean_square import Quadratic, mean_square
+from equipoise.synthesis.convex.polish import Parts
 from equipoise.synthesis.problem import Problem
 
 

@@ -7,9 +7,9 @@ import pytest
 from robots import lee_chen, planar_arm
 
 import equipoise as eq
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 from equipoise.synthesis import METHODS, by_name
-from equipoise.synthesis.convex import ConvexOptions, SolverOptions
+from equipoise.synthesis.convex.method import ConvexOptions, SolverOptions
 from equipoise.synthesis.problem import ProblemOptions
 from equipoise.synthesis.pseudobase.method import PseudobaseOptions
 

@@ -12,11 +12,11 @@ from test_kinematics import coupled
 from zoo import ZOO, geared_pair, pendulum, vertical_slide
 
 from equipoise.energy import FourierEnergy, Potential
-from equipoise.energy.peak import climb
-from equipoise.errors import InputError
+from equipoise.energy.extremes import climb
 from equipoise.kinematics import Tree, sample
 from equipoise.kinematics.sampling import bounds, inside
-from equipoise.mechanism import Mechanism
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Mechanism
 
 
 def peaks(m: Mechanism, samples: int = 500, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:

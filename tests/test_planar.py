@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from robots import lee_chen, planar_arm, robot
 
 import equipoise as eq
-from equipoise.energy.planar import PlanarArm
-from equipoise.errors import InfeasibleError, InputError, UnsupportedError
+from equipoise.model.errors import InfeasibleError, InputError, UnsupportedError
 from equipoise.synthesis import METHODS
+from equipoise.synthesis.planar.arm import PlanarArm
 from equipoise.synthesis.planar.layouts import default_layout, example_arm, name
 
 ARM = Path(__file__).parents[1] / "examples" / "mechanisms" / "lee_chen_arm.yaml"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from robots import lee_chen, planar_arm
 
-from equipoise.synthesis import gram
-from equipoise.synthesis.polish import Parts, best_amounts, jacobian, polish, residual
+from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex.polish import Parts, best_amounts, jacobian, polish, residual
 from equipoise.synthesis.problem import Problem, Region
 
 

@@ -17,12 +17,12 @@ from scipy.spatial.transform import Rotation
 from test_kinematics import slow_poses, slow_values
 from zoo import EXACT, PENDULUM_K, pendulum
 
-from equipoise.elements import Spring, Vec3
 from equipoise.energy import Potential
-from equipoise.errors import UnsupportedError
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
-from equipoise.mechanism import WORLD, Body, Joint, Mechanism
+from equipoise.model.elements import Spring, Vec3
+from equipoise.model.errors import UnsupportedError
+from equipoise.model.mechanism import WORLD, Body, Joint, Mechanism
 
 pin = peer("pinocchio")
 

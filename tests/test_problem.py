@@ -8,8 +8,8 @@ from robots import lee_chen, planar_arm
 
 import equipoise as eq
 from equipoise.energy import Potential
-from equipoise.errors import InputError
 from equipoise.kinematics import Tree, sample
+from equipoise.model.errors import InputError
 
 ARM = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
 LIMITED = replace(ARM, joints=tuple(replace(j, range=(-0.5, 2.0)) for j in ARM.joints))

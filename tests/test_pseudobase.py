@@ -21,10 +21,10 @@ from zoo import counterweight, gantry, lenzo_spherical, mirrored_pair, parallelo
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import mjcf
+from equipoise.model.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.synthesis import METHODS
-from equipoise.synthesis.pseudobase.moments import moments, segments
+from equipoise.synthesis.arms.moments import moments, segments
 from equipoise.synthesis.pseudobase.parallelograms import mobility
 
 

@@ -12,13 +12,14 @@ from robots import TABLE_5A, TABLE_5B, lee_chen, lee_chen_springs
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.energy.planar import PlanarArm
-from equipoise.errors import InputError
-from equipoise.hardware import Envelope, ExtensionSpring, Options, bill, realisations
-from equipoise.hardware.leaves import Torques, leaves
-from equipoise.hardware.realise import KINDS
-from equipoise.hardware.stretch import Pulley, Straight, beyond
+from equipoise.hardware import Envelope, ExtensionSpring, Options, realisations
+from equipoise.hardware.realise import bill
+from equipoise.hardware.realise.installed import Torques, leaves
+from equipoise.hardware.realise.realisations import KINDS
+from equipoise.hardware.realise.stretch import Pulley, Straight, beyond
 from equipoise.kinematics import Tree, sample
+from equipoise.model.errors import InputError
+from equipoise.synthesis.planar.arm import PlanarArm
 
 ROOM = Envelope(0.04, 1.2)
 

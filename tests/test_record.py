@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from equipoise.errors import InputError
+from equipoise.model.errors import InputError
 from equipoise.reproduce import Map, Plot, Row, reproduce
 from equipoise.reproduce.record import half_unit, spread, vector
 

@@ -14,9 +14,9 @@ from robots import lee_chen_springs, robot
 from zoo import free_length_pendulum, geared_pair, pendulum, vertical_slide
 
 import equipoise as eq
-from equipoise.errors import InputError
 from equipoise.io import files
-from equipoise.report.page import built
+from equipoise.model.errors import InputError
+from equipoise.report.page import hardware as built
 from equipoise.report.page.content import Number
 from equipoise.report.page.design import torque_table
 from equipoise.report.page.html import page

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from engine import Engine
-from equipoise.energy.potential import Potential
 from peers import peer, robot_files
 
 import equipoise as eq
-from equipoise.errors import EquipoiseWarning, InputError, SlipWarning
+from equipoise.energy import Potential
 from equipoise.kinematics import Tree
 from equipoise.kinematics.sampling import sample
+from equipoise.model.errors import EquipoiseWarning, InputError, SlipWarning
 
 URDF = robot_files("example-robot-data", ".urdf")
 MJCF = [path for name in ("gymnasium", "gymnasium-robotics") for path in robot_files(name, ".xml")]

@@ -10,10 +10,10 @@ from robots import lee_chen_springs, robot
 
 import equipoise as eq
 from equipoise.clearance import Room, clearance
-from equipoise.errors import InfeasibleError, InputError
 from equipoise.kinematics import Tree, sample
-from equipoise.mechanism import Capsule
-from equipoise.synthesis.free_length import ordinary
+from equipoise.model.errors import InfeasibleError, InputError
+from equipoise.model.mechanism import Capsule
+from equipoise.synthesis.convex.ordinary import ordinary
 
 
 def near_post(distance: float = 0.01) -> eq.Mechanism:

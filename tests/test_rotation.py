@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from equipoise.rotation import from_rpy, to_rpy
+from equipoise.model.rotation import from_rpy, to_rpy
 
 angles = st.floats(-pi, pi) | st.sampled_from([0.0, pi / 2, -pi / 2, pi, -pi])
 

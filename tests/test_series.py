@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from equipoise.energy.series import Series
+from equipoise.energy.fourier.series import Series
 
 N = 3  # coordinates
 

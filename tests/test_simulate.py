@@ -16,10 +16,10 @@ from robots import robot
 from zoo import G, exact_pendulum, lee_chen_arm, lenzo_spherical, parallelogram_lamp, pendulum
 
 import equipoise as eq
-from equipoise.errors import EquipoiseWarning, InputError
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
+from equipoise.model.errors import EquipoiseWarning, InputError
 from equipoise.reproduce import cho2012, lin2010
 from equipoise.simulate import Engine, EngineError, play, release
 from equipoise.synthesis.delta.robot import DeltaRobot

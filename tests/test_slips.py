@@ -11,10 +11,10 @@ from robots import robot
 
 import equipoise as eq
 from equipoise import io
-from equipoise.elements import Spring, TorsionSpring
-from equipoise.errors import SlipWarning
-from equipoise.mechanism import Body, Joint, Loop, Mechanism, PointMass
-from equipoise.slips import far, slips, twice, weightless
+from equipoise.model.elements import Spring, TorsionSpring
+from equipoise.model.errors import SlipWarning
+from equipoise.model.mechanism import Body, Joint, Loop, Mechanism, PointMass
+from equipoise.model.slips import far, slips, twice, weightless
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").rglob("*.yaml"))
 
@@ -95,7 +95,7 @@ def test_robots_have_no_slips(name):
     assert slips(robot(name)) == []
 
 
-@pytest.mark.filterwarnings("ignore::equipoise.errors.EquipoiseWarning")
+@pytest.mark.filterwarnings("ignore::equipoise.model.errors.EquipoiseWarning")
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_have_no_slips(path):
     assert slips(io.read(path, None)) == []

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from equipoise.synthesis.convex.spring_block import SpringBlock, smat, svec
 from equipoise.synthesis.region import Region
-from equipoise.synthesis.spring_block import SpringBlock, smat, svec
 
 BALL_AND_BOX = SpringBlock("world", "arm", Region.ball(0.2, (0, 0, 0.1)), Region.box((0.1, 0.0, 0.3), (0.2, 0, 0)))
 

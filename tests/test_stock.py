@@ -4,10 +4,10 @@ from dataclasses import astuple
 
 import pytest
 
-from equipoise.errors import InputError
 from equipoise.hardware import Limits, Stock, read_catalogue, write_catalogue
-from equipoise.hardware.made_up import made_up_catalogue
-from equipoise.hardware.stock import COLUMNS
+from equipoise.hardware.stock.made_up import made_up_catalogue
+from equipoise.hardware.stock.parts import COLUMNS
+from equipoise.model.errors import InputError
 
 VENDOR = """\
 Art.-Nr.;Art;R [N/mm];Fn;F0;L0 [mm];De [mm];d [mm];Gewicht [g]

@@ -10,7 +10,7 @@ from robots import robot
 
 from equipoise.energy import Potential
 from equipoise.energy.stream import CHUNK, Statistics, statistics
-from equipoise.errors import InputError, UnsupportedError
+from equipoise.model.errors import InputError, UnsupportedError
 
 MECHANISM = random_mechanism(8)
 

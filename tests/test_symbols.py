@@ -7,9 +7,9 @@ import pytest
 import sympy
 from robots import lee_chen
 
-from equipoise.energy.blocks import StiffnessBlocks
-from equipoise.energy.planar import Installation, PlanarArm
-from equipoise.energy.symbols import Angles, SymbolicBlocks, Term, design_equations
+from equipoise.synthesis.planar.arm import Installation, PlanarArm
+from equipoise.synthesis.planar.design_equations import Angles, SymbolicBlocks, Term, design_equations
+from equipoise.synthesis.planar.stiffness_blocks import StiffnessBlocks
 
 UP, AHEAD, BACK = 1, 0, 2  # angles in quarter turns
 MIN_SPRINGS = design_equations(

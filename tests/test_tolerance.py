@@ -13,8 +13,8 @@ from robots import robot
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.errors import InputError, UnsupportedError
 from equipoise.kinematics import Tree, sample
+from equipoise.model.errors import InputError, UnsupportedError
 from equipoise.robust import Scatter, tolerance
 from equipoise.robust.torque_map import TorqueMap
 

@@ -14,13 +14,13 @@ from test_potential import mujoco_state
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
-from equipoise.energy.fourier import FourierEnergy
+from equipoise.energy.fourier.energy import FourierEnergy
 from equipoise.energy.kernel import Kernel
-from equipoise.errors import InputError, NoFourierForm, UnsupportedError
 from equipoise.io import mjcf
 from equipoise.io.yaml import to_text
 from equipoise.kinematics import Tree
-from equipoise.mechanism import JOINT_TYPES
+from equipoise.model.errors import InputError, NoFourierForm, UnsupportedError
+from equipoise.model.mechanism import JOINT_TYPES
 
 HINGE = """\
 schema: 1

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 from peers import peer
 
-from equipoise.elements import Spring
-from equipoise.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.io import urdf
 from equipoise.io.lint import inertia_lint
-from equipoise.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass
+from equipoise.model.elements import Spring
+from equipoise.model.errors import EquipoiseWarning, InputError, UnsupportedError
+from equipoise.model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 NAMES = ("ur5", "ur10", "panda", "xarm7", "human")
 MASSES = {"ur5": 20.9939, "ur10": 32.7, "panda": 17.451901, "xarm7": 11.31706, "human": 74.712}
 COORDINATES = {"ur5": 6, "ur10": 6, "panda": 8, "xarm7": 7, "human": 36}
 
-quiet = pytest.mark.filterwarnings("ignore::equipoise.errors.EquipoiseWarning")
+quiet = pytest.mark.filterwarnings("ignore::equipoise.model.errors.EquipoiseWarning")
 
 
 def read(body: str) -> Mechanism:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from test_urdf import TWO, joint, read
 
-from equipoise.errors import EquipoiseWarning
 from equipoise.io import urdf
+from equipoise.model.errors import EquipoiseWarning
 
 
 def test_limits_that_are_not_there_are_none() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from test_urdf import TWO, joint, read
 
-from equipoise.errors import EquipoiseWarning
+from equipoise.model.errors import EquipoiseWarning
 
 NONE = "ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'"
 M = "<link name='m'><inertial>{}</inertial></link>" + joint("fixed", name="m", child="m") + joint("fixed")
@@ -45,10 +45,6 @@ NOTES = {
     "unknown in a joint": (joint("fixed", "<spring stiffness='2'/>"), "<spring> in joint 'j' (line 3): it is unknown"),
     "unknown attribute": (joint("continuous", "<dynamics damping='0' K='7000'/>"),
                           "K of <dynamics> (line 3): it is unknown"),
-    "a simulator's spring": (
-        joint("continuous") + "\n<gazebo reference='j'><springStiffness>5</springStiffness></gazebo>",
-        "<springStiffness> of 'j' (line 4): a simulator's spring on a joint is left out",
-    ),
     "no gravity": (joint("fixed") + "<gazebo reference='b'><turnGravityOff>true</turnGravityOff></gazebo>",
                    "<turnGravityOff> of 'b' (line 3): gravity that is switched off is left out"),
     "no gravity, the new way": (joint("fixed") + "<gazebo reference='b'><gravity>0</gravity></gazebo>",

@@ -10,7 +10,7 @@ from test_urdf import TWO, faults, joint, quiet, read
 import equipoise as eq
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
-from equipoise.mechanism import Loop
+from equipoise.model.mechanism import Loop
 
 FOUR_BAR = """<link name="frame"/>
 <link name="crank"><inertial><origin xyz=".16 0 .01"/><mass value="4.2"/></inertial></link>

@@ -17,7 +17,7 @@ from peers import peer
 from robots import robot
 
 import equipoise as eq
-from equipoise.mechanism import Mechanism
+from equipoise.model.mechanism import Mechanism
 
 FOLDER = Path(__file__).parents[1] / "examples" / "mechanisms"
 EXAMPLES = ("ur5", "lin2010_balanced", "delta_balanced", "bevel_balanced")
@@ -172,7 +172,7 @@ def test_buttons_and_switches(browser: Any, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_space_of_links_is_drawn(browser: Any, tmp_path: Path) -> None:
-    from equipoise.mechanism import Capsule
+    from equipoise.model.mechanism import Capsule
 
     m = eq.load(FOLDER / "pendulum.yaml")
     m = replace(m, capsules=(Capsule("rod", "arm", (0.0, 0.0, 0.0), (0.4, 0.0, 0.0), 0.05),))

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from equipoise.errors import InputError
 from equipoise.hardware import WIRES, Envelope, ExtensionSpring, Limits, Need
-from equipoise.hardware.extension import LOOP
-from equipoise.hardware.helical import coils_for
-from equipoise.hardware.winding import STEP, compression, extension, side_by_side
+from equipoise.hardware.sizing.extension import LOOP
+from equipoise.hardware.sizing.helical import coils_for
+from equipoise.hardware.sizing.winding import STEP, compression, extension, side_by_side
+from equipoise.model.errors import InputError
 
 MM = 1e-3
 DH = (WIRES["DH"],)

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from strategies import mechanisms
 
 from equipoise import io
-from equipoise.elements import Spring
-from equipoise.errors import InputError
 from equipoise.io import yaml
-from equipoise.io.located import parse, resolve
-from equipoise.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from equipoise.io.yaml_positions import parse, resolve
+from equipoise.model.elements import Spring
+from equipoise.model.errors import InputError
+from equipoise.model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 EXAMPLE = """\
 schema: 1

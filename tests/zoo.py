@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 
-from equipoise.elements import Spring
-from equipoise.mechanism import Body, Capsule, Coupling, Joint, Mechanism, PointMass
+from equipoise.model.elements import Spring
+from equipoise.model.mechanism import Body, Capsule, Coupling, Joint, Mechanism, PointMass
 
 G = 9.81  # [m/s^2]
 LIFT = (0.0, -1.0, 0.0)  # the axis about which a positive angle lifts what points along x

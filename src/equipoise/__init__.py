@@ -13,10 +13,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import notebook
 from ._version import __version__
-from .elements import Spring, TorsionSpring
-from .mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from .model import notebook
+from .model.elements import Spring, TorsionSpring
+from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 if TYPE_CHECKING:
     from .balance import Balance, check

@@ -12,19 +12,19 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .arrays import Array
-from .coordinate import Coordinate
-from .energy.closed import ClosedEnergy
 from .energy.evaluate import Potential
-from .energy.fourier import EXACT, FourierEnergy
-from .energy.frames import MAX_TERMS
-from .energy.peak import climb
+from .energy.extremes import climb
+from .energy.fourier.closed import ClosedEnergy
+from .energy.fourier.energy import EXACT, FourierEnergy
+from .energy.fourier.frames import MAX_TERMS
 from .energy.reference import State
-from .errors import InputError, NoFourierForm
 from .kinematics import Linkage, Mobility, Tree, sample
-from .mechanism import Mechanism
-from .notebook import Shown
-from .validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
+from .model.arrays import Array
+from .model.coordinate import Coordinate
+from .model.errors import InputError, NoFourierForm
+from .model.mechanism import Mechanism
+from .model.notebook import Shown
+from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
 

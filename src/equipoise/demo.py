@@ -7,10 +7,10 @@ from pathlib import Path
 from rich.console import RenderableType
 from rich.text import Text
 
-from .errors import InputError
 from .io import load, save
 from .io.files import check_writable
-from .progress import Progress
+from .model.errors import InputError
+from .model.progress import Progress
 from .report.figure import save_figure
 from .report.text import design_lines
 from .synthesis import design

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array
-from ..elements import lines
 from ..kinematics import Poses, Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.elements import lines
+from ..model.mechanism import Mechanism
 from .segments import closest
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array
+from ..model.arrays import Array
 
 
 def closest(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array, Array]:

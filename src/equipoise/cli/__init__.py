@@ -13,8 +13,8 @@ from contextlib import suppress
 from io import TextIOWrapper
 from typing import NoReturn
 
-from ..errors import EquipoiseError, shortened
-from . import (  # each registers its commands, in this order of the help
+from ..model.errors import EquipoiseError, shortened
+from . import (
     adjust,
     check,
     clearance,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..units import share
+from ..model.units import share
 from . import terminal
 from .app import File, Json, app
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..errors import InputError
+from ..model.errors import InputError
 from . import terminal
 from .app import File, Json, app
 

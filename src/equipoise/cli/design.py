@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError
-from ..units import share
+from ..model.errors import InputError
+from ..model.units import share
 from . import terminal
 from .app import File, Json, app
 

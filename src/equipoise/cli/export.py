@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import InputError
+from ..model.errors import InputError
 from . import terminal
 from .app import File, app
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
+    from ..model.mechanism import Mechanism
 
 DRAWINGS = {"svg": "equipoise.report.schematic", "dxf": "equipoise.report.attachments"}
 
@@ -34,9 +34,9 @@ def export(
     """
     from importlib import import_module
 
-    from ..errors import Fault, nearest
     from ..io import WRITERS
     from ..io.files import check_writable, write_text
+    from ..model.errors import Fault, nearest
 
     modules = {name: f"equipoise.io.{name}" for name in WRITERS} | DRAWINGS
     if to not in modules:

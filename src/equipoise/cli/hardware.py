@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import Fault, InputError
-from ..units import quantity, share
+from ..model.errors import Fault, InputError
+from ..model.units import quantity, share
 from . import terminal
 from .app import File, Json, app
 
@@ -46,7 +46,7 @@ def hardware(
     Example: [bold]equipoise hardware balanced.yaml --outer 40mm --length 600mm -o bill.csv --sheet springs.svg[/bold]
     """
     from ..balance import check
-    from ..hardware import bill as make
+    from ..hardware.realise import bill as make
     from ..io.files import check_writable, write_text
     from ..report.drawing import check_sheet, save_drawing
 
@@ -101,9 +101,9 @@ def stock(
     Example: [bold]equipoise stock balanced.yaml list.csv --column "rate=R [N/mm]" -o stock.yaml[/bold]
     """
     from ..balance import check
-    from ..hardware.choice import choose
-    from ..hardware.movable import Travel
-    from ..hardware.stock import read_catalogue
+    from ..hardware.stock.movable import Travel
+    from ..hardware.stock.parts import read_catalogue
+    from ..hardware.stock.selection import choose
     from ..io import check_savable, save
     from . import options
 
@@ -142,8 +142,8 @@ def made_up(
 
     Example: [bold]equipoise made-up -o list.csv --count 500[/bold]
     """
-    from ..hardware.made_up import made_up_catalogue
-    from ..hardware.stock import write_catalogue
+    from ..hardware.stock.made_up import made_up_catalogue
+    from ..hardware.stock.parts import write_catalogue
 
     write_catalogue(made_up_catalogue(count, seed), output)
     terminal.say(f"wrote {output}: {count} springs, all made up")
@@ -159,8 +159,9 @@ def _options(
     limits: list[str],
     friction: list[str],
 ) -> Options:
-    from ..hardware import Envelope, Limits, Options, wire
-    from ..hardware.realise import FRICTION
+    from ..hardware import Envelope, Limits, Options
+    from ..hardware.realise.realisations import FRICTION
+    from ..hardware.sizing import wire
     from . import options
 
     rm = None if strength is None else quantity(strength, "stress", "--strength")

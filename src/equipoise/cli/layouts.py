@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import Fault, InputError, nearest
+from ..model.errors import Fault, InputError, nearest
 from . import terminal
 from .app import Json, app
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
-from ..units import quantity, to_si
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError, nearest
+from ..model.units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..kinematics import Tree

@@ -5,14 +5,14 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from .. import slips
-from ..errors import Fault, InputError, nearest
+from ..model import slips
+from ..model.errors import Fault, InputError, nearest
+from ..model.units import quantity, to_share, to_si
 from ..synthesis import Parameter, Region
-from ..units import quantity, to_share, to_si
 from . import terminal
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
+    from ..model.mechanism import Mechanism
     from ..synthesis.payload import Payload
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..errors import Fault, InputError, nearest
+from ..model.errors import Fault, InputError, nearest
 from . import terminal
 from .app import File, Json, app
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import Fault, InputError
-from ..units import quantity
+from ..model.errors import Fault, InputError
+from ..model.units import quantity
 from . import terminal
 from .app import File, Json, app
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
+    from ..model.mechanism import Mechanism
     from . import motions
 
 

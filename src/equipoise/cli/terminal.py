@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import EquipoiseWarning, visible
+from ..model.errors import EquipoiseWarning, visible
 from .app import reading
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
-    from ..progress import Progress
+    from ..model.mechanism import Mechanism
+    from ..model.progress import Progress
 
 
 def load(file: Path, *, weightless: bool = False) -> Mechanism:
@@ -28,9 +28,9 @@ def load(file: Path, *, weightless: bool = False) -> Mechanism:
     Raises:
         InputError: as `io.load`; something looks wrong and may not; nothing that moves has a mass.
     """
-    from .. import slips
-    from ..errors import Fault, InputError
     from ..io import load
+    from ..model import slips
+    from ..model.errors import Fault, InputError
 
     with shown_warnings() as said:
         mechanism = load(file, base=reading["base"])
@@ -47,7 +47,7 @@ def slip(messages: list[str]) -> None:
     Raises:
         InputError: something does, and ``--strict`` is given.
     """
-    from ..errors import InputError
+    from ..model.errors import InputError
 
     for message in messages:
         say(f"warning: {message}")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..units import share
+from ..model.units import share
 from . import terminal
 from .app import File, Json, app
 
@@ -37,7 +37,7 @@ def tolerance(
 
     Example: [bold]equipoise tolerance balanced.yaml --friction '5 N m' --yield 97% --plot builds.svg[/bold]
     """
-    from ..errors import InputError
+    from ..model.errors import InputError
     from ..report.builds import save_builds
     from ..report.figure import check_drawable
     from ..robust import Scatter

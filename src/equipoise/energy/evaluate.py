@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
 from .reference import Reference, State
 
 FEW = 32  # poses for which writing down a program does not pay

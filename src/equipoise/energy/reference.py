@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
 from ..kinematics.tree import Tree
-from ..masses import lumped_masses
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.masses import lumped_masses
+from ..model.mechanism import Mechanism
 
 CHUNK_ENTRIES = 4_000_000  # velocities held at a time, about 32 MB
 

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Integers
-from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..kinematics.sampling import sample
 from ..kinematics.tree import Tree
-from ..mechanism import Mechanism
-from ..validate import whole_number
+from ..model.arrays import Array, Integers
+from ..model.errors import Fault, InputError, UnsupportedError, nearest
+from ..model.mechanism import Mechanism
+from ..model.validate import whole_number
 from .kernel import Kernel
 
 CHUNK = 16_384  # poses held at a time

@@ -1,14 +1,14 @@
 """From springs on paper to springs one can buy, wind and mount."""
 
-from .bill import Bill, bill
-from .choice import Choice, choose
-from .compression import CompressionSpring
-from .extension import ExtensionSpring
-from .limits import Limits
-from .realise import Options, Realisation, realisations
-from .stock import Stock, read_catalogue, write_catalogue
-from .winding import Envelope, Need, Winding
-from .wire import WIRES, Wire, wire
+from .realise.bill import Bill, bill
+from .realise.realisations import Options, Realisation, realisations
+from .sizing.compression import CompressionSpring
+from .sizing.extension import ExtensionSpring
+from .sizing.limits import Limits
+from .sizing.winding import Envelope, Need, Winding
+from .sizing.wire import WIRES, Wire, wire
+from .stock.parts import Stock, read_catalogue, write_catalogue
+from .stock.selection import Choice, choose
 
 __all__ = [
     "WIRES",

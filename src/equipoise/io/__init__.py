@@ -7,11 +7,11 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import Fault, InputError, SlipWarning
+from ..model.errors import Fault, InputError, SlipWarning
 from . import models
 
 if TYPE_CHECKING:
-    from ..mechanism import Mechanism
+    from ..model.mechanism import Mechanism
 
 YAML_SUFFIXES = (".yaml", ".yml")
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
@@ -33,7 +33,7 @@ def load(path: str | os.PathLike[str], *, base: str | None = None) -> Mechanism:
         EquipoiseWarning: for what is read otherwise than it stands there, or not at all.
         SlipWarning: for what looks like a slip (see `slips`).
     """
-    from ..slips import slips
+    from ..model.slips import slips
 
     if base not in (None, "fixed", "free"):
         raise InputError(Fault(("base",), f"unknown value '{base}'", ("fixed", "free")))

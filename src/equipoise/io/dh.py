@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import atan2, cos, hypot, sin
 
-from ..elements import Vec3
-from ..mechanism import WORLD, Body, Joint
+from ..model.elements import Vec3
+from ..model.mechanism import WORLD, Body, Joint
 from .schema import DhTable
 
 Z = (0.0, 0.0, 1.0)

@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any
 
-from ..elements import Element, Spring
-from ..errors import Fault, InputError, Path
-from ..mechanism import SINGLE, Joint, Mechanism
-from .located import MAX_DEPTH, resolve
+from ..model.elements import Element, Spring
+from ..model.errors import Fault, InputError, Path
+from ..model.mechanism import SINGLE, Joint, Mechanism
 from .schema import SCHEMA
+from .yaml_positions import MAX_DEPTH, resolve
 
 _PLAIN = re.compile(r"[^\W\d_](?:[\w ./()+-]*[\w./()+-])?")
 _OTHER_YAML = re.compile(r"y|n|yes|no|on|off", re.IGNORECASE)  # booleans to readers of YAML 1.1

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo
 
-from ..errors import Fault, InputError, nearest
-from ..mechanism import JOINT_TYPES, MOVING, SINGLE, JointType
-from ..units import SI_UNITS, quantity, to_si
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import JOINT_TYPES, MOVING, SINGLE, JointType
+from ..model.units import SI_UNITS, quantity, to_si
 
 DIMENSION_OF = {"revolute": "angle", "prismatic": "length"}
 """What the coordinate of a joint measures."""

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 
 try:
     import fcntl

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Array, vec3
-from ..elements import Vec3
-from ..mechanism import WORLD, Body, Joint, JointType, Mechanism
+from ..model.arrays import Array, vec3
+from ..model.elements import Vec3
+from ..model.mechanism import WORLD, Body, Joint, JointType, Mechanism
 from .text import Names
 
 X, Y, Z = np.eye(3)

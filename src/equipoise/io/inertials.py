@@ -7,9 +7,9 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..errors import EquipoiseWarning
-from ..mechanism import Body
-from ..rotation import to_quaternion
+from ..model.errors import EquipoiseWarning
+from ..model.mechanism import Body
+from ..model.rotation import to_quaternion
 from .lint import impossible, principal
 from .text import numbers
 

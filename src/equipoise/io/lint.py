@@ -7,7 +7,7 @@ from collections import defaultdict
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism import Body, Mechanism
+from ..model.mechanism import Body, Mechanism
 
 ROUNDING = 1e-6
 """Relative excess of a principal moment that is put down to the rounded numbers of a file, not to an error."""

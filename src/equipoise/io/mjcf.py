@@ -26,10 +26,10 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..elements import Vec3
-from ..errors import UnsupportedError
-from ..mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
-from ..rotation import about, from_rpy, to_quaternion
+from ..model.elements import Vec3
+from ..model.errors import UnsupportedError
+from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
+from ..model.rotation import about, from_rpy, to_quaternion
 from .inertials import Inertials
 from .replicas import Replicas, replicas
 from .text import Names, numbers

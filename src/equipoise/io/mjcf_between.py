@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array, vec3
-from ..elements import Element, Spring, TorsionSpring, Vec3
-from ..mechanism import Coupling, Loop
-from ..rotation import from_quaternion
+from ..model.arrays import Array, vec3
+from ..model.elements import Element, Spring, TorsionSpring, Vec3
+from ..model.mechanism import Coupling, Loop
+from ..model.rotation import from_quaternion
 from .mjcf import HINGE_ARM
 from .mjcf_acts import Model
 from .text import Names

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 from . import files, mjcf_child
 from .xmltree import Document
 

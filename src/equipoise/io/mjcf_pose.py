@@ -9,9 +9,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..arrays import Array, Integers
-from ..mechanism import Mechanism
-from ..rotation import ball_angles, from_quaternion
+from ..model.arrays import Array, Integers
+from ..model.mechanism import Mechanism
+from ..model.rotation import ball_angles, from_quaternion
 from . import mjcf
 from .mjcf_acts import Model
 

@@ -29,11 +29,11 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array, vec3
-from ..errors import Fault, InputError
-from ..mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
-from ..rotation import about, from_quaternion, to_rpy
-from ..validate import MOST
+from ..model.arrays import Array, vec3
+from ..model.errors import Fault, InputError
+from ..model.mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
+from ..model.rotation import about, from_quaternion, to_rpy
+from ..model.validate import MOST
 from . import files, freed
 from .mjcf_acts import Model
 from .mjcf_between import Between, Places

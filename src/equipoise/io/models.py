@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
 from .files import read_text
 from .urdf_known import CONVERTED
 

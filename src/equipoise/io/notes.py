@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections import defaultdict
 
-from ..errors import EquipoiseWarning, Fault, InputError
+from ..model.errors import EquipoiseWarning, Fault, InputError
 
 MOST = 8  # names in one warning; the others are counted
 

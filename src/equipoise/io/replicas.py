@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..elements import Vec3
-from ..errors import UnsupportedError
-from ..mechanism import WORLD, Joint, Mechanism
-from ..rotation import from_rpy
+from ..model.elements import Vec3
+from ..model.errors import UnsupportedError
+from ..model.mechanism import WORLD, Joint, Mechanism
+from ..model.rotation import from_rpy
 from .text import Names
 
 

@@ -12,9 +12,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
-from ..elements import KINDS, Element, Spring, TorsionSpring
-from ..errors import COUNTED, Fault, InputError, Path, nearest
-from ..mechanism import SINGLE
+from ..model.elements import KINDS, Element, Spring, TorsionSpring
+from ..model.errors import COUNTED, Fault, InputError, Path, nearest
+from ..model.mechanism import SINGLE
 from .fields import (
     Angle,
     Angles,

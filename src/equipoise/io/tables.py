@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from io import BytesIO, StringIO
 from typing import Any
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 from .files import read_bytes, read_text
 
 SEPARATORS = ",;\t"

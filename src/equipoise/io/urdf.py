@@ -18,10 +18,10 @@ from math import isfinite
 
 import numpy as np
 
-from ..elements import Vec3
-from ..errors import EquipoiseWarning, Fault, InputError, Path, nearest
-from ..mechanism import WORLD, Body, Coupling, Joint, JointType, Mechanism
-from ..rotation import from_rpy
+from ..model.elements import Vec3
+from ..model.errors import EquipoiseWarning, Fault, InputError, Path, nearest
+from ..model.mechanism import WORLD, Body, Coupling, Joint, JointType, Mechanism
+from ..model.rotation import from_rpy
 from . import files, freed
 from .lint import inertia_lint
 from .notes import Notes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..mechanism import WORLD, Body, Coupling, Joint
+from ..model.mechanism import WORLD, Body, Coupling, Joint
 from . import freed
 from .notes import Notes
 from .text import Names

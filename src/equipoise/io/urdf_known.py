@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 from .notes import Notes
 from .xmltree import Document, Element
 

@@ -10,9 +10,9 @@ from math import isfinite
 
 import numpy as np
 
-from ..arrays import Array, vec3
-from ..mechanism import Loop
-from ..rotation import from_rpy
+from ..model.arrays import Array, vec3
+from ..model.mechanism import Loop
+from ..model.rotation import from_rpy
 from .notes import Notes
 from .urdf_known import label
 from .xmltree import Element

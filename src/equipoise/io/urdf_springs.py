@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..elements import TorsionSpring
-from ..mechanism import Joint
+from ..model.elements import TorsionSpring
+from ..model.mechanism import Joint
 from .notes import Notes
 from .urdf_known import words
 from .xmltree import Element

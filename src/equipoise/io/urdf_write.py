@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from xml.etree import ElementTree as ET
 
-from ..errors import EquipoiseWarning, UnsupportedError
-from ..mechanism import WORLD, Body, Joint, Mechanism
+from ..model.errors import EquipoiseWarning, UnsupportedError
+from ..model.mechanism import WORLD, Body, Joint, Mechanism
 from .text import Names, numbers
 
 GRAVITY = (0.0, 0.0, -9.81)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from ..errors import Fault, InputError
+from ..model.errors import Fault, InputError
 
 MAX_ELEMENTS = 50_000  # the largest robot files have a few thousand
 

@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 
-from ..elements import Vec3
-from ..errors import Fault, InputError, Path, nearest
-from ..mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
-from ..units import quantity
+from ..model.elements import Vec3
+from ..model.errors import Fault, InputError, Path, nearest
+from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from ..model.units import quantity
 from . import dh, models
 from .emit import to_text
 from .fields import DIMENSION_OF
 from .files import read_text
-from .located import Located, parse
 from .schema import SCHEMA, MechanismFile, validate
+from .yaml_positions import Located, parse
 
 __all__ = ["read", "to_text"]
 _SINGULAR = {"bodies": "body", "joints": "joint", "couplings": "coupling"}

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError
 from .closure import Closure
 from .continuation import CLOSED, Split
 from .tree import Tree

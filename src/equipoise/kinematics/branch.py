@@ -12,8 +12,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..arrays import Array, Booleans, Integers
-from ..mechanism import Body, Mechanism
+from ..model.arrays import Array, Booleans, Integers
+from ..model.mechanism import Body, Mechanism
 from . import assembly
 from .closure import Closure
 from .continuation import SHORTEST, follow, tangent

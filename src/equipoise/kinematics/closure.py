@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array, Booleans
-from ..mechanism import Loop
+from ..model.arrays import Array, Booleans
+from ..model.mechanism import Loop
 from .tree import Poses, Tree
 
 OPPOSITE = 1e-3  # least 1 + a . b: beyond it the equation of a hinge is continued linearly

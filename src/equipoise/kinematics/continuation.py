@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Booleans, Integers
+from ..model.arrays import Array, Booleans, Integers
 from .closure import Closure
 
 CLOSED = 1e-13  # residual, as a share of the mechanism's size

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Integers
-from ..mechanism import Mechanism
+from ..model.arrays import Array, Integers
+from ..model.mechanism import Mechanism
 from .branch import Branch
 from .continuation import tangent
 from .tree import Poses, Tree, Velocities

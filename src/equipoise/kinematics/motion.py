@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError, nearest
 
 LARGEST, SHORTEST = 1e9, 1e-9  # [s, rad or m] of times and values, [s] between two times: beyond them rates overflow
 USABLE = f"times and values are below {LARGEST:.0e} in size, and times are at least {SHORTEST:.0e} s apart"

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, Booleans
-from ..errors import Fault, InputError
+from ..model.arrays import Array, Booleans
+from ..model.errors import Fault, InputError
 from .tree import Tree
 
 SLIDE = 1.0  # [m] a prismatic joint without a range is sampled over +-SLIDE

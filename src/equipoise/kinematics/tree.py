@@ -14,10 +14,10 @@ from functools import cached_property, lru_cache, reduce
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, Booleans, Integers
-from ..errors import InputError
-from ..mechanism import SINGLE, Joint, Mechanism
-from ..rotation import about, from_rpy, harmonics
+from ..model.arrays import Array, Booleans, Integers
+from ..model.errors import InputError
+from ..model.mechanism import SINGLE, Joint, Mechanism
+from ..model.rotation import about, from_rpy, harmonics
 
 
 @dataclass(frozen=True)

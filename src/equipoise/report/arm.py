@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..kinematics import Poses
+from ..model.arrays import Array
 from . import style
 from .poses import View
 from .skeleton import SAME, Bar, Point, Skeleton

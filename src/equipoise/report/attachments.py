@@ -13,10 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InputError
 from ..kinematics import Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.errors import InputError
+from ..model.mechanism import Mechanism
 from .poses import choose
 from .skeleton import Point, Skeleton
 from .style import clean

@@ -11,11 +11,11 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
-from ..hardware.bill import Bill, Item, way_dict
-from ..hardware.choice import Choice
-from ..hardware.extension import ExtensionSpring
-from ..hardware.realise import FRICTION
-from ..hardware.wire import MM
+from ..hardware.realise.bill import Bill, Item, way_dict
+from ..hardware.realise.realisations import FRICTION
+from ..hardware.sizing.extension import ExtensionSpring
+from ..hardware.sizing.wire import MM
+from ..hardware.stock.selection import Choice
 
 # what the spreadsheet holds of each chosen spring, in the order of its columns; all in SI units
 COLUMNS = (

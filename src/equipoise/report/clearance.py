@@ -8,7 +8,7 @@ from rich.text import Text
 
 from ..clearance import Clearance
 from ..kinematics import Tree
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
 from .text import pose
 
 LISTED = 8  # distances

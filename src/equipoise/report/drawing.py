@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Literal
 from xml.sax.saxutils import escape
 
-from ..errors import Fault, InputError
 from ..io.files import check_writable, write_text
+from ..model.errors import Fault, InputError
 from . import style
 
 Anchor = Literal["start", "middle", "end"]

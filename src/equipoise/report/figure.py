@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import Balance, check
 from ..energy.evaluate import Potential
-from ..errors import Fault, InputError
 from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError
+from ..model.mechanism import Mechanism
 from . import arm, loads, style
 from .poses import choose
 from .skeleton import Skeleton

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Integers
 from ..balance import Balance
-from ..coordinate import Coordinate, Slide
+from ..model.arrays import Array, Integers
+from ..model.coordinate import Coordinate, Slide
 from . import style
 
 MOST = 12  # coordinates shown

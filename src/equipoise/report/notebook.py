@@ -6,7 +6,7 @@ from html import escape
 from zlib import crc32
 
 from ..balance import Balance
-from ..notebook import register
+from ..model.notebook import register
 from ..synthesis import Design
 from .page import design as sections
 from .page.html import block

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
 from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, sample
 from ..kinematics.sampling import bounds, inside
-from ..masses import lumped_masses
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.masses import lumped_masses
+from ..model.mechanism import Mechanism
 from .skeleton import Skeleton
 
 CANDIDATES = 600  # random poses to choose from

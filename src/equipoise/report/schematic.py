@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array
 from ..kinematics import Poses, Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.mechanism import Mechanism
 from . import style
 from .arm import coiled, window
 from .drawing import SMALL, THICK, THIN, Drawing, Label, Line, Pair

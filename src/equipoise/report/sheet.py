@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .._version import __version__
-from ..hardware.bill import Bill, Item
-from ..hardware.compression import CompressionSpring
-from ..hardware.realise import Realisation
-from ..hardware.wire import MM, MPA
+from ..hardware.realise.bill import Bill, Item
+from ..hardware.realise.realisations import Realisation
+from ..hardware.sizing.compression import CompressionSpring
+from ..hardware.sizing.wire import MM, MPA
 from .drawing import LARGE, NORMAL, SMALL, THICK, Drawing
 from .spring_view import draw_spring
 

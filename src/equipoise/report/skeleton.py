@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array
 from ..kinematics import Poses, Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.mechanism import Mechanism
 
 SAME = 1e-6  # [m] points closer than this are drawn as one
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..hardware.compression import CompressionSpring
-from ..hardware.extension import LOOP, ExtensionSpring
-from ..hardware.wire import MM
+from ..hardware.sizing.compression import CompressionSpring
+from ..hardware.sizing.extension import LOOP, ExtensionSpring
+from ..hardware.sizing.wire import MM
+from ..model.arrays import Array
 from .drawing import HIDDEN, THICK, THIN, Drawing, Line, Pair
 
 Turns = Callable[[Any], Any]  # turns of the wire -> mm along the axis

@@ -11,7 +11,7 @@ from html import escape
 
 import numpy as np
 
-from ..arrays import Array
+from ..model.arrays import Array
 from . import style
 
 WIDTH = 360  # of every plot, in its own units; a page scales it

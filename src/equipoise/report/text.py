@@ -9,14 +9,14 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..arrays import Array
 from ..balance import Balance
-from ..coordinate import Coordinate
-from ..energy.fourier import EXACT
-from ..mechanism import Mechanism
+from ..energy.fourier.energy import EXACT
+from ..model.arrays import Array
+from ..model.coordinate import Coordinate
+from ..model.mechanism import Mechanism
+from ..model.units import SI_UNITS
 from ..synthesis import METHODS, Design, Parameter
-from ..synthesis.free_length import Ordinary
-from ..units import SI_UNITS
+from ..synthesis.convex.ordinary import Ordinary
 
 
 def console(stderr: bool = False) -> Console:

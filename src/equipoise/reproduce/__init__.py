@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError, nearest
 from .record import Map, Plot, Reproduction, Row
 
 PAPERS: tuple[str, ...] = (

@@ -12,12 +12,12 @@ from math import pi
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import check, fourier_form
 from ..energy.evaluate import Potential
-from ..errors import InfeasibleError
 from ..kinematics import Tree
-from ..mechanism import Body, Joint, Mechanism
+from ..model.arrays import Array
+from ..model.errors import InfeasibleError
+from ..model.mechanism import Body, Joint, Mechanism
 from ..synthesis import Design, design
 from ..synthesis.bevel.differential import ARRANGEMENTS, SIDES, single_stiffness, stiffness
 from .record import Map, Reproduction, Row, half_unit, spread

@@ -11,18 +11,18 @@ from math import radians
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import check
-from ..energy.blocks import StiffnessBlocks
 from ..energy.evaluate import Potential
-from ..energy.planar import Installation, PlanarArm
-from ..errors import EquipoiseError
 from ..kinematics.motion import Move, follow
-from ..mechanism import Body, Joint, Mechanism
+from ..model.arrays import Array
+from ..model.errors import EquipoiseError
+from ..model.mechanism import Body, Joint, Mechanism
+from ..synthesis.planar.arm import Installation, PlanarArm
 from ..synthesis.planar.criteria import Objective, failures, sign_failures
 from ..synthesis.planar.exclusion import Layout
 from ..synthesis.planar.installing import STIFFNESS, A, B, Equations, Fixed, upward
 from ..synthesis.planar.layouts import Search, labels, name, search, span
+from ..synthesis.planar.stiffness_blocks import StiffnessBlocks
 from .record import Plot, Reproduction, Row, spread
 
 PAPER = "lee2014"

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import Balance, check
 from ..energy.evaluate import Potential
-from ..errors import InfeasibleError
 from ..kinematics.motion import Move, follow
-from ..mechanism import Body, Joint, Mechanism, Workspace
+from ..model.arrays import Array
+from ..model.errors import InfeasibleError
+from ..model.mechanism import Body, Joint, Mechanism, Workspace
 from ..synthesis import Design, design
 from .record import Plot, Reproduction, Row
 

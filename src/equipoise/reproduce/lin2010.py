@@ -13,7 +13,6 @@ from math import pi
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..arrays import Array
 from ..balance import check
 from ..energy.evaluate import Potential
 from ..energy.reference import State
@@ -21,9 +20,10 @@ from ..io.dh import expand
 from ..io.schema import DhRow, DhTable
 from ..kinematics import Tree
 from ..kinematics.motion import Move, follow
-from ..mechanism import Body, Mechanism
+from ..model.arrays import Array
+from ..model.mechanism import Body, Mechanism
 from ..synthesis import Design, design
-from ..synthesis.pseudobase.moments import Lump, Moment, Segment, moments, segments
+from ..synthesis.arms.moments import Lump, Moment, Segment, moments, segments
 from ..synthesis.pseudobase.parallelograms import mobility
 from .record import Plot, Reproduction, Row, spread, vector
 

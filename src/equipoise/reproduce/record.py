@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import Array
+from ..model.arrays import Array
 
 Verdict = Literal["agrees", "differs", "erratum", "computed"]
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import check
 from ..energy.evaluate import Potential
 from ..kinematics import Tree
-from ..mechanism import Body, Joint, Mechanism
+from ..model.arrays import Array
+from ..model.mechanism import Body, Joint, Mechanism
 from ..synthesis.delta.legs import DeltaLeg, delta_legs
 from ..synthesis.delta.method import design, one_per_leg
 from ..synthesis.delta.robot import DeltaRobot

@@ -14,15 +14,15 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import Balance, check
-from ..elements import lines
 from ..energy.evaluate import Potential
-from ..energy.peak import climb
-from ..errors import InputError
+from ..energy.extremes import climb
 from ..kinematics import Tree, sample
-from ..mechanism import Mechanism
-from ..progress import Progress, silent
+from ..model.arrays import Array
+from ..model.elements import lines
+from ..model.errors import InputError
+from ..model.mechanism import Mechanism
+from ..model.progress import Progress, silent
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
 from .moves import Handle, Move, Way, What, moved, sets, value

@@ -9,9 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import Array
-from ..elements import lines
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.elements import lines
+from ..model.mechanism import Mechanism
 
 What = Literal["p_a", "p_b", "free_length"]
 MOST = 3  # springs moved at once

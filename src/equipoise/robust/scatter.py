@@ -8,11 +8,11 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from ..arrays import Array
-from ..elements import lines
-from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..kinematics import Tree
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.elements import lines
+from ..model.errors import Fault, InputError, UnsupportedError, nearest
+from ..model.mechanism import Mechanism
 
 Shape = Literal["normal", "uniform"]
 Kind = Literal["stiffness", "attachment", "mass", "length"]

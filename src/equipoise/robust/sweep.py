@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..balance import Balance, check
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
+from ..model.validate import whole_number
 from ..synthesis.payload import Payload
-from ..validate import whole_number
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..coordinate import Coordinate
-from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree, sample
-from ..mechanism import Mechanism
-from ..progress import Progress, silent
+from ..model.arrays import Array
+from ..model.coordinate import Coordinate
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import Mechanism
+from ..model.progress import Progress, silent
+from ..model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from ..synthesis.mounts import Mounts
-from ..validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from .scatter import Parameter, Scatter
 from .torque_map import TorqueMap
 

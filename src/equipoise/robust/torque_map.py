@@ -13,12 +13,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
-from ..elements import lines
 from ..energy.evaluate import Potential
 from ..kinematics import Poses, Tree, Velocities
-from ..mechanism import Mechanism
-from ..rotation import skew
+from ..model.arrays import Array
+from ..model.elements import lines
+from ..model.mechanism import Mechanism
+from ..model.rotation import skew
 from .scatter import Drawing, Parameter, Scatter
 
 RANK = 1e-11  # singular values below this share of the largest do nothing

@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import EquipoiseError, Fault, InputError
 from ..io import mjcf
 from ..kinematics import Tree
 from ..kinematics.linkage import ClosedPoses
-from ..mechanism import Mechanism
-from ..rotation import about, ball_angles, from_quaternion
+from ..model.arrays import Array
+from ..model.errors import EquipoiseError, Fault, InputError
+from ..model.mechanism import Mechanism
+from ..model.rotation import about, ball_angles, from_quaternion
 
 TIMESTEP = {False: 1e-3, True: 1e-4}  # [s] without and with equalities, which are stiff
 SOLREF = (2e-4, 1.0)  # time constant [s] (two steps, the least that is stable) and damping ratio of equalities

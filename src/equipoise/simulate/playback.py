@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..coordinate import Coordinate
-from ..errors import InputError
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.coordinate import Coordinate
+from ..model.errors import InputError
+from ..model.mechanism import Mechanism
 from .engine import Engine
 
 

@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..coordinate import Coordinate
-from ..errors import Fault, InputError
 from ..kinematics.sampling import sample
-from ..mechanism import Mechanism
-from ..progress import Progress, silent
-from ..validate import whole_number
+from ..model.arrays import Array
+from ..model.coordinate import Coordinate
+from ..model.errors import Fault, InputError
+from ..model.mechanism import Mechanism
+from ..model.progress import Progress, silent
+from ..model.validate import whole_number
 from .engine import Engine, Settings
 
 MAX_POSES = 10_000  # each is a simulation

@@ -1,6 +1,6 @@
 """Designing springs: the problem, the methods and the design they return."""
 
-from .convex import solve
+from .convex.method import solve
 from .design import Design
 from .method import Method, Parameter
 from .methods import METHODS, by_name, design

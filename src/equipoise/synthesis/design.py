@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..balance import Balance, check
-from ..mechanism import Mechanism
-from ..notebook import Shown
+from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 
 if TYPE_CHECKING:
-    from .free_length import Ordinary
+    from .convex.ordinary import Ordinary
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Design(Shown):
 
     def with_ordinary_springs(self, free_length: float | Mapping[str, float] | None = None, **options: Any) -> Design:
         """The same with free lengths, or room for its springs; see `free_length.ordinary`. Its bound is no more."""
-        from .free_length import ordinary
+        from .convex.ordinary import ordinary
 
         found = ordinary(self.mechanism, free_length, **options)
         residual = sqrt(float(sum(found.balance.residual.rms**2)))

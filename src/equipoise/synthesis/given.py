@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError, nearest
 from .options import Number
 
 Value = Number | Sequence[Number]

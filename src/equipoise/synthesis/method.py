@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
 from .design import Design
 from .options import MethodOptions, Parameter
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, ParamSpec, Protocol, cast, overload
 
-from ..errors import Fault, InputError, UnsupportedError, nearest
-from ..mechanism import Mechanism
-from . import convex
+from ..model.errors import Fault, InputError, UnsupportedError, nearest
+from ..model.mechanism import Mechanism
 from .bevel import method as bevel
-from .convex import ConvexOptions
+from .convex import method as convex
+from .convex.method import ConvexOptions
 from .delta import method as delta
 from .design import Design
 from .method import Method

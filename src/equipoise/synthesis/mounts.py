@@ -14,7 +14,7 @@ import numpy as np
 
 from ..kinematics import Tree
 from ..kinematics.groups import places
-from ..mechanism import Mechanism
+from ..model.mechanism import Mechanism
 
 
 @dataclass(frozen=True)

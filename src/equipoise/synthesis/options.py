@@ -14,8 +14,8 @@ from inspect import signature
 from math import inf
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
-from ..progress import Progress
-from ..units import SI_UNITS, quantity, share
+from ..model.progress import Progress
+from ..model.units import SI_UNITS, quantity, share
 
 Kind = Literal[
     "length", "angle", "mass", "stiffness", "torque", "number", "share", "whole", "text", "names", "pairs", "flag"

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
 from ..balance import check
-from ..elements import Element
-from ..errors import Fault, InputError, nearest
 from ..io.text import Names
-from ..mechanism import Mechanism, PointMass
-from .bevel.shoulder import Shoulder
+from ..model.arrays import Array
+from ..model.elements import Element
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import Mechanism, PointMass
+from .arms.shoulder import Shoulder
 from .given import number, vectors
 from .options import Number
 

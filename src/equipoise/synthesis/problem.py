@@ -13,17 +13,17 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import Fault, InputError, nearest
 from ..kinematics import Tree
-from ..mechanism import Mechanism
-from ..validate import MAX_SAMPLES, whole_number
-from .blocks import Block
+from ..model.arrays import Array
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import Mechanism
+from ..model.validate import MAX_SAMPLES, whole_number
+from .convex.blocks import Block
+from .convex.spring_block import SpringBlock
 from .given import number
 from .mounts import Mounts
 from .options import Number, Options, option, takes
 from .region import SHAPES, Region, Shape
-from .spring_block import SpringBlock
 
 __all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 
-from ..errors import InfeasibleError
+from ..model.errors import InfeasibleError
 
 SAME = 1e-9  # relative: values that agree
 

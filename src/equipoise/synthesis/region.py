@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array, Booleans
-from ..errors import Fault, InputError
+from ..model.arrays import Array, Booleans
+from ..model.errors import Fault, InputError
 
 Shape = Literal["ball", "box"]
 SHAPES: tuple[Shape, ...] = ("ball", "box")

@@ -16,7 +16,7 @@ from http import HTTPStatus
 from ipaddress import ip_address
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError
+from ..model.errors import InputError
 from .messages import Messages
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..io import files
 from ..io.xmltree import Document, Element
-from ..rotation import from_rpy
+from ..model.arrays import Array
+from ..model.rotation import from_rpy
 
 PACKAGE = "package://"
 

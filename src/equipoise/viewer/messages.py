@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import shortened, visible
+from ..model.errors import shortened, visible
 
 FARTHEST = 1e9  # [m] of a camera or a handle
 ROUNDING = 1e-9  # of a range: the page writes the ends of a slider's steps otherwise

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._version import __version__
-from ..arrays import Array
 from ..balance import Balance, check
-from ..elements import Element, Spring, Vec3
 from ..energy.evaluate import Potential
 from ..energy.reference import State
 from ..kinematics import Tree, sample
 from ..kinematics.sampling import inside
-from ..mechanism import Mechanism, PointMass
-from ..progress import Progress
+from ..model.arrays import Array
+from ..model.elements import Element, Spring, Vec3
+from ..model.mechanism import Mechanism, PointMass
+from ..model.progress import Progress
 from ..report.poses import View, choose
 from ..report.skeleton import Skeleton
 from ..synthesis import Design, Problem, Region, solve

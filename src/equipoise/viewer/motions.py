@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array
 from ..kinematics import Tree, sample
 from ..kinematics.motion import Move, follow
 from ..kinematics.sampling import bounds, inside
-from ..mechanism import Mechanism
+from ..model.arrays import Array
+from ..model.mechanism import Mechanism
 
 RATE = 25  # frames a second
 LEG = 2.0  # [s] from one pose to the next

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import EquipoiseError
 from ..io import save
 from ..kinematics.sampling import bounds
+from ..model.errors import EquipoiseError
 from . import readout
 from .model import Model
 from .motions import RATE, motions

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..arrays import Array
+from ..model.arrays import Array
 from ..report import style
 from ..report.skeleton import Point, Skeleton
 from .meshes import Picture

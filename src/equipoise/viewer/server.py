@@ -9,9 +9,9 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
-from ..errors import EquipoiseWarning, Fault, InputError
 from ..io import check_savable
-from ..mechanism import Mechanism
+from ..model.errors import EquipoiseWarning, Fault, InputError
+from ..model.mechanism import Mechanism
 from .gate import quiet, served
 
 HOST, PORT = "127.0.0.1", 8080

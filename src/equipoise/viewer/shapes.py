@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from ..arrays import Array, Integers
+from ..model.arrays import Array, Integers
 
 SIDES, STEPS = 6, 12  # of a coil's wire: round it, and along each turn
 STRAIGHT = 0.12  # of a spring's length at each end

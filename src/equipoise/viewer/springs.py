@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import EquipoiseError
+from ..model.errors import EquipoiseError
 from .model import Model
 from .scene import Scene
 

@@ -14,24 +14,7 @@ from threading import Event
 import numpy as np
 
 from . import sines
-from .trace import (
-    ADD,
-    ADDK,
-    FMA,
-    FMAK,
-    FMAM,
-    FMS,
-    FMSK,
-    FNM,
-    INPUT,
-    MUL,
-    MULK,
-    SHARE,
-    SINCOS,
-    SQRT,
-    SUB,
-    Program,
-)
+from .trace import ADD, ADDK, FMA, FMAK, FMAM, FMS, FMSK, FNM, INPUT, MUL, MULK, SHARE, SINCOS, SQRT, SUB, Program
 
 LANES = 128  # poses in a block: their registers stay in the second cache, most of them in the first
 

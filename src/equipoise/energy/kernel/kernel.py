@@ -14,13 +14,13 @@ from typing import Any, Literal, NamedTuple, Protocol, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...arrays import Array
-from ...errors import Fault, InputError, UnsupportedError, nearest
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Tree
-from ...mechanism import Mechanism
+from ...model.arrays import Array
+from ...model.errors import Fault, InputError, UnsupportedError, nearest
+from ...model.mechanism import Mechanism
 from . import by_numpy, generic, sines
-from .layout import Layout
+from .flat_tree import Layout
 from .recursions import programs
 from .trace import Program
 

@@ -17,9 +17,9 @@ from typing import Literal
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements.element import End, LinePen, Pens, Pull
-from .layout import Layout, Turn
+from ...model.arrays import Array
+from ...model.elements.element import End, LinePen, Pens, Pull
+from .flat_tree import Layout, Turn
 from .trace import Program, Trace, Value, Vector
 from .vectors import ZERO, about_x, about_z, add, angle_sum, constant, cross, cross_z, minus, plus, scaled
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Integers
+from ...model.arrays import Array, Integers
 
 Value = float | int
 Vector = tuple[Value, Value, Value]

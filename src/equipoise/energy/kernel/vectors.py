@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...arrays import Array
-from .layout import Turn
+from ...model.arrays import Array
+from .flat_tree import Turn
 from .trace import Trace, Value, Vector
 
 ZERO: Vector = (0.0, 0.0, 0.0)

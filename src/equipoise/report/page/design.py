@@ -10,10 +10,10 @@ from typing import Any
 
 from ..._version import __version__
 from ...balance import Balance
-from ...coordinate import Coordinate
-from ...energy.fourier import EXACT
+from ...energy.fourier.energy import EXACT
 from ...io.yaml import to_text
-from ...masses import lumped_masses
+from ...model.coordinate import Coordinate
+from ...model.masses import lumped_masses
 from ..schematic import symbol
 from ..text import percent, torque
 from . import pictures

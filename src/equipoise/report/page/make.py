@@ -8,14 +8,15 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ...balance import Balance
-from ...errors import Fault, InputError, nearest
 from ...io.files import check_writable, write_bytes
-from ...progress import Progress, silent
+from ...model.errors import Fault, InputError, nearest
+from ...model.progress import Progress, silent
 from .. import style
 from ..text import verdict
-from . import built, design
-from .built import EXTRAS
+from . import design
+from . import hardware as built
 from .content import Report
+from .hardware import EXTRAS
 from .html import page
 from .pdf import pdf
 

@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ...arrays import Array
 from ...balance import Balance
 from ...energy.evaluate import Potential
 from ...kinematics import Tree
+from ...model.arrays import Array
 from .. import arm, loads, style, svg
 from ..figure import holding, picture
 from ..poses import choose

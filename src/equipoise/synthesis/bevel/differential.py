@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import Array
+from ...model.arrays import Array
 
 ARRANGEMENTS = ("near", "far")
 """Where the fixed bevel gear is on the roll axis: on the side that the axis points away from, or opposite."""

@@ -17,13 +17,14 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring, Vec3
-from ...errors import Fault, InfeasibleError, InputError
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import bounds
-from ...mechanism import Body, Coupling, Joint, Mechanism
+from ...model.arrays import Array
+from ...model.elements import Spring, Vec3
+from ...model.errors import Fault, InfeasibleError, InputError
+from ...model.mechanism import Body, Coupling, Joint, Mechanism
+from ..arms.shoulder import Shoulder, find
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes
 from ..margin import torque_margin
@@ -32,7 +33,6 @@ from ..mounts import Mounts
 from ..options import MethodOptions, Number, option, takes
 from ..payload import Payload
 from .differential import ARRANGEMENTS, SIDES, differential
-from .shoulder import Shoulder, find
 
 NODES = 64  # of the quadrature over each joint's range
 WORKSPACES = ("file", "hemisphere")

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import UnsupportedError
 from ...kinematics import Tree
 from ...kinematics.groups import Place, places
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Link
-from ...masses import lumped_masses
-from ...mechanism import Mechanism
-from ...rotation import about
+from ...model.arrays import Array
+from ...model.errors import UnsupportedError
+from ...model.masses import lumped_masses
+from ...model.mechanism import Mechanism
+from ...model.rotation import about
 
 Y = (0.0, 1.0, 0.0)
 SMALL = 1e-9  # relative: what counts as nothing

@@ -16,10 +16,10 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import Fault, InputError
-from ...mechanism import Body, Joint, Mechanism
-from ...rotation import to_rpy
+from ...model.arrays import Array
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Body, Joint, Mechanism
+from ...model.rotation import to_rpy
 from ..design import Design
 from ..given import number
 from ..method import Method

@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, asin, cos, pi, sin
 
-from ...elements import Vec3
-from ...errors import Fault, InputError
-from ...mechanism import Body, Joint, Loop, Mechanism
+from ...model.elements import Vec3
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Body, Joint, Loop, Mechanism
 
 LEGS = (1, 2, 3)
 Y: Vec3 = (0.0, 1.0, 0.0)

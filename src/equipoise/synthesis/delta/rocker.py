@@ -18,11 +18,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring, Vec3
-from ...errors import Fault, InputError
-from ...mechanism import Body, Coupling, Joint
-from ...rotation import to_rpy
+from ...model.arrays import Array
+from ...model.elements import Spring, Vec3
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Body, Coupling, Joint
+from ...model.rotation import to_rpy
 
 
 @dataclass(frozen=True)

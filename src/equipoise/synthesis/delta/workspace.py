@@ -12,13 +12,13 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring
 from ...energy.evaluate import Potential
-from ...errors import Fault, InputError
 from ...kinematics import Tree
-from ...mechanism import Mechanism
-from ...validate import MAX_SAMPLES, whole_number
+from ...model.arrays import Array
+from ...model.elements import Spring
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Mechanism
+from ...model.validate import MAX_SAMPLES, whole_number
 from .legs import DeltaLeg
 from .rocker import vec3
 

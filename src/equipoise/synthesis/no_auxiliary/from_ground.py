@@ -17,9 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring
-from ..chain import Chain, ChainLink
+from ...model.arrays import Array
+from ...model.elements import Spring
+from ..arms.chain import Chain, ChainLink
 
 
 def fewest_springs(chain: Chain) -> int:

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring
-from ...errors import Fault, InfeasibleError, InputError, nearest
 from ...kinematics import Tree
 from ...kinematics.groups import places
-from ...mechanism import Mechanism
-from ..chain import Chain, ChainLink, chain, reasons
+from ...model.arrays import Array
+from ...model.elements import Spring
+from ...model.errors import Fault, InfeasibleError, InputError, nearest
+from ...model.mechanism import Mechanism
+from ..arms.chain import Chain, ChainLink, chain, reasons
 from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method

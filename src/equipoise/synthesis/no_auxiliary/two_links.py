@@ -21,10 +21,10 @@ from typing import Literal
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring
-from ...errors import InfeasibleError
-from ..chain import Chain, ChainLink
+from ...model.arrays import Array
+from ...model.elements import Spring
+from ...model.errors import InfeasibleError
+from ..arms.chain import Chain, ChainLink
 from ..products import Product, fill, show
 
 Layout = Literal["a", "b", "c", "d"]

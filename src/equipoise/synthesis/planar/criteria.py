@@ -24,7 +24,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ...energy.planar import Installation, PlanarArm
+from .arm import Installation, PlanarArm
 from .exclusion import Layout
 
 Objective = Literal["springs", "span", "weighted"]

@@ -17,10 +17,10 @@ from math import inf, log
 
 import numpy as np
 
-from ...arrays import Array, Booleans, Complexes
-from ...energy.blocks import StiffnessBlocks
-from ...energy.planar import Installation, PlanarArm
+from ...model.arrays import Array, Booleans, Complexes
+from .arm import Installation, PlanarArm
 from .exclusion import Layout
+from .stiffness_blocks import StiffnessBlocks
 
 STARTS = 40  # tried at most
 ENOUGH = 6  # solutions to choose the least energy from

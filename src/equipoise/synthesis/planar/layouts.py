@@ -23,13 +23,13 @@ from typing import Any, get_args
 import numpy as np
 
 from ...balance import Balance, check
-from ...energy.planar import PlanarArm
-from ...energy.symbols import Angles, SymbolicBlocks, design_equations
-from ...errors import Fault, InputError
-from ...mechanism import Body, Joint, Mechanism
-from ...progress import Progress
-from ...validate import whole_number
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Body, Joint, Mechanism
+from ...model.progress import Progress
+from ...model.validate import whole_number
+from .arm import PlanarArm
 from .criteria import Failure, Objective, failures, objections
+from .design_equations import Angles, SymbolicBlocks, design_equations
 from .exclusion import Layout, Leaf, Proof, prove
 from .installing import Solution, solve
 

@@ -16,15 +16,15 @@ from typing import Any
 
 import numpy as np
 
-from ...energy.planar import PlanarArm, obstacles
-from ...errors import EquipoiseError, Fault, InfeasibleError, InputError
-from ...mechanism import Mechanism
-from ...progress import Progress
-from ...validate import whole_number
+from ...model.errors import EquipoiseError, Fault, InfeasibleError, InputError
+from ...model.mechanism import Mechanism
+from ...model.progress import Progress
+from ...model.validate import whole_number
 from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method
 from ..options import MethodOptions, Number, option, takes
+from .arm import PlanarArm, obstacles
 from .criteria import failures
 from .exclusion import Layout, prove
 from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward

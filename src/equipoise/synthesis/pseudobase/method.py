@@ -14,15 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import Fault, InputError, nearest
-from ...mechanism import Mechanism
+from ...model.arrays import Array
+from ...model.errors import Fault, InputError, nearest
+from ...model.mechanism import Mechanism
+from ..arms.moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes, vectors
 from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, Number, option, takes
-from .moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from .parallelograms import Builder, Module, mobility
 
 

@@ -17,14 +17,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
-from ...elements import Spring, Vec3
 from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import sample
-from ...mechanism import Body, Joint, Loop, Mechanism
-from ...rotation import to_rpy
-from .moments import Lump, Moment, Segment, upwards
+from ...model.arrays import Array
+from ...model.elements import Spring, Vec3
+from ...model.mechanism import Body, Joint, Loop, Mechanism
+from ...model.rotation import to_rpy
+from ..arms.moments import Lump, Moment, Segment, upwards
 
 POSES = 64  # of which the one with the widest parallelograms is where real joints are assembled
 

@@ -1,0 +1,50 @@
+"""Room for springs as a constraint: rows that are zero where everything is far enough away."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kinematics import Tree
+from ..model.arrays import Array
+from ..model.mechanism import Mechanism
+from .pairs import Pairs
+from .segments import closest
+
+MORE = 0.02  # share of its scale by which the distance that is aimed at is larger than the one asked for
+THIN = 1e-3  # [m] least scale
+TOUCHING = 1e-12  # [m] less has no direction
+
+
+class Room:
+    """What is missing of `least` [m] at poses `q` (N, n), as a share of the spring's and the distance's own scale."""
+
+    def __init__(self, mechanism: Mechanism, q: Array, least: float) -> None:
+        self.pairs, self.springs = Pairs(mechanism), len(mechanism.springs)
+        self.poses = Tree.of(mechanism).poses(q)
+        self.R = self.poses.R[:, self.pairs.bodies]  # (N, springs + capsules, 2, 3, 3)
+        radii = self.pairs.radius[self.pairs.first] + self.pairs.radius[self.pairs.second]
+        self.scale = np.maximum(least + radii, THIN)
+        self.wanted = least + radii + MORE * self.scale
+        self.weight = 1 / np.sqrt(len(q))
+
+    def __call__(self, ends: Array) -> tuple[Array, Array]:
+        """Rows that are not zero, and their derivative (rows, springs, 2, 3) by attachments (springs, 2, 3)."""
+        pairs = self.pairs
+        p = pairs.points(self.poses, np.concatenate([ends, pairs.ends[self.springs :]]))
+        a, b, c, d = pairs.of_both(p)
+        distance, s, t = closest(a, b, c, d)
+        pose, pair = np.nonzero(distance < self.wanted)
+        a, b, c, d, s, t, distance = (x[pose, pair] for x in (a, b, c, d, s, t, distance))
+        apart = a + s[:, None] * (b - a) - c - t[:, None] * (d - c)
+        crossing = np.cross(b - a, d - c)  # where they meet, either side of it is as good as the other
+        n = np.where((distance > TOUCHING)[:, None], apart, crossing)
+        n /= np.maximum(np.linalg.norm(n, axis=1), 1e-300)[:, None]
+        unit = self.weight / self.scale[pair]
+        J = np.zeros((len(pose), self.springs, 2, 3))
+        row = np.arange(len(pose))
+        for side, sign, along in ((pairs.first[pair], 1.0, s), (pairs.second[pair], -1.0, t)):
+            own = side < self.springs
+            for e, share in ((0, 1 - along), (1, along)):
+                turned = np.einsum("rji,rj->ri", self.R[pose, side, e], n)
+                J[row[own], side[own], e] -= (sign * unit * share)[own, None] * turned[own]
+        return (self.wanted[pair] - distance) * unit, J

@@ -1,0 +1,1 @@
+"""The energy as a finite Fourier series: the certificate of exact balance."""

@@ -1,0 +1,1 @@
+"""How a spring on paper is built, and what that leaves."""

@@ -1,0 +1,1 @@
+"""One spring of wire: dimensions, stresses and margins."""

@@ -1,0 +1,1 @@
+"""Springs of a list, chosen with their attachments."""

@@ -1,0 +1,1 @@
+"""Frozen values: the mechanism, its bodies, joints, force elements and masses, with units, names and errors."""

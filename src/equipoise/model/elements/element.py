@@ -1,0 +1,156 @@
+"""What every force element answers, whatever its kind. Sizes and places come from the tree and poses that are given.
+
+Values only: a mechanism holds elements as it holds bodies. What they need of kinematics, Fourier series or the kernel's
+symbols is handed to them, so that a kind is one file and everything else asks.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from ..arrays import Array
+from ..errors import Fault
+from .law import Law
+
+if TYPE_CHECKING:
+    from ...energy.fourier.frames import Frames
+    from ...energy.fourier.series import Series
+    from ...energy.kernel.trace import Trace, Value, Vector
+    from ...kinematics import Poses, Tree, Velocities
+    from ..mechanism import Mechanism
+
+Vec3 = tuple[float, float, float]
+End = tuple[str, Vec3]  # a body's name and a point in its frame [m]
+Range = tuple[float, float]
+
+
+Pull = Callable[["Value"], None]
+LinePen = Callable[[tuple[End, End], float], tuple["Vector", Pull]]
+AnglePen = Callable[[tuple[tuple[str, float], ...]], tuple["Value", Pull]]
+
+
+class Pens(NamedTuple):
+    """How a recursion of the kernel writes paths down; each gives a path and takes what multiplies its derivative.
+
+    Attributes:
+        line: (ends, scale) -> the stretch times the scale, and what takes the factor of its torque.
+        angle: (ratio of each joint) -> the sum of the joints' values, and what takes the force.
+    """
+
+    line: LinePen
+    angle: AnglePen
+
+
+class Knob(NamedTuple):
+    """A number of an element that a person turns: its field, its label with the unit, and how many of that unit are one
+    of SI. Between `low` and `high` in the label's unit, or from nothing to a multiple of what it is."""
+
+    field: str
+    label: str
+    factor: float = 1.0
+    low: float | None = None
+    high: float | None = None
+
+
+class Element(ABC):
+    """A force element: frozen, with a `name` and the law and path of its `kind`.
+
+    Attributes:
+        kind: as a mechanism file names it.
+        noun: as a message names it.
+        knobs: its numbers that a viewer offers to turn.
+        path_unit, force_unit: of its path ("m" or "rad") and of its force ("N" or "N m").
+    """
+
+    kind: ClassVar[str]
+    noun: ClassVar[str]
+    knobs: ClassVar[tuple[Knob, ...]]
+    path_unit: ClassVar[str]
+    force_unit: ClassVar[str]
+    name: str
+
+    @property
+    @abstractmethod
+    def law(self) -> Law:
+        """Force as a function of the path."""
+
+    # physics
+
+    @abstractmethod
+    def path(self, tree: Tree, poses: Poses) -> Array:
+        """(N,) [m or rad]."""
+
+    @abstractmethod
+    def state(self, tree: Tree, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
+        """Path (N,) [m or rad] and holding torque (N, n) [N m or N]."""
+
+    @abstractmethod
+    def series(self, frames: Frames) -> Series:
+        """The energy [J] as a finite series; coefficients (T, 1, 1).
+
+        Raises:
+            NoFourierForm: it has none.
+        """
+
+    @abstractmethod
+    def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
+        """Path and energy [J] on the kernel's symbols; the pens get its torque."""
+
+    def lumps(self) -> Iterator[tuple[str, float, Vec3]]:
+        """Its own mass as (body, mass [kg], point in the body's frame [m])."""
+        return iter(())
+
+    # files
+
+    @abstractmethod
+    def faults(self, mechanism: Mechanism) -> Iterator[Fault]:
+        """What is wrong with it, paths from the element on; its name is checked with all others."""
+
+    @abstractmethod
+    def to_dict(self, path: Range, force: Range) -> dict[str, Any]:
+        """Its entry in ``check --json``, with the least and greatest path [m or rad] and force [N or N m]."""
+
+    @abstractmethod
+    def mjcf(self) -> tuple[str, dict[str, Iterable[float]], list[tuple[str, dict[str, str | float]]]]:
+        """A tendon of MJCF: its tag, its numbers, and what it runs along (tag and attributes)."""
+
+    # pictures and words
+
+    @property
+    def ends(self) -> tuple[End, ...]:
+        """The points where it is fixed to bodies; none where a joint carries it."""
+        return ()
+
+    def outline(self, tree: Tree) -> tuple[End, ...]:
+        """A line to draw it along, as points of bodies."""
+        return self.ends
+
+    @property
+    @abstractmethod
+    def where(self) -> str:
+        """What it acts on, for a legend."""
+
+    @property
+    @abstractmethod
+    def between(self) -> str:
+        """The same within a sentence."""
+
+    @property
+    @abstractmethod
+    def strength(self) -> tuple[float, str]:
+        """The number that says how strong it is, and its unit."""
+
+    @property
+    @abstractmethod
+    def free(self) -> float:
+        """The path at which it exerts nothing [m or rad]."""
+
+    @abstractmethod
+    def sentence(self, path: Range, force: Range) -> str:
+        """One line for a terminal: what it is, where, and how it is used."""
+
+    @abstractmethod
+    def scaled(self, factor: float) -> Element:
+        """The same, its force times `factor`."""

@@ -1,0 +1,1 @@
+"""What several methods share: chains of links, mass moments, shoulders."""

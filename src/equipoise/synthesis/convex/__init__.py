@@ -1,0 +1,1 @@
+"""The convex program: blocks of unknowns, the bound, few springs that reach it."""

@@ -1,0 +1,104 @@
+"""Blocks of unknowns: what the convex program may choose, one class in one file for each kind of element.
+
+Every torque is linear in the unknowns x of the blocks, and each block's x lies in a cone. The cone is spanned by
+*parts*, single elements that can be built: a part is an amount k >= 0 times `Block.part` of its shape u, a point of
+[-1, 1]^shape. The program bounds what any number of parts can do; the search looks for few of them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from ...energy.fourier.frames import Frames
+from ...energy.fourier.series import Series
+from ...kinematics import Poses, Tree, Velocities
+from ...model.arrays import Array
+from ...model.mechanism import Mechanism
+from ..region import RIM
+
+
+@dataclass(frozen=True)
+class Cone:
+    """``F x + g`` lies in a cone: F (rows, unknowns), g (rows,), zero when None.
+
+    Second order: the first row is at least the norm of the others. Semidefinite: the rows are the upper triangle of a
+    symmetric matrix, column by column, with what is off the diagonal times the square root of two.
+    """
+
+    kind: Literal["zero", "nonnegative", "second order", "semidefinite"]
+    F: Array
+    g: Array | None = None
+
+
+class Block(ABC):
+    """The unknowns of one place: two bodies, or a joint.
+
+    Attributes:
+        weighs: whether they have weight, so that what they do depends on gravity.
+    """
+
+    weighs: ClassVar[bool] = False
+
+    @property
+    @abstractmethod
+    def unknowns(self) -> int:
+        """How many there are."""
+
+    @property
+    @abstractmethod
+    def shape(self) -> int:
+        """How many coordinates the shape of a part has."""
+
+    @property
+    @abstractmethod
+    def place(self) -> tuple[str, ...]:
+        """The names of the bodies or joints that it acts between."""
+
+    @abstractmethod
+    def series(self, frames: Frames) -> Series:
+        """The energy for each unknown: coefficients (T, unknowns) [J], each term once.
+
+        Raises:
+            NoFourierForm: it has none; then samples are taken.
+        """
+
+    @abstractmethod
+    def sampled(self, tree: Tree, q: Array, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
+        """At configurations q (N, n): torque (N, n, unknowns) [N m or N], and energy summed over q (unknowns,) [J]."""
+
+    @abstractmethod
+    def cones(self) -> Iterable[Cone]:
+        """Where the unknowns lie."""
+
+    @abstractmethod
+    def part(self, u: Array) -> Array:
+        """(N, unknowns) of one unit of a part with shape u (N, shape)."""
+
+    @abstractmethod
+    def slopes(self, u: Array) -> Array:
+        """(N, shape, unknowns) derivative of `part`."""
+
+    @abstractmethod
+    def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
+        """The mechanism with `k` units of a part of shape u (shape,)."""
+
+    def project(self, u: Array) -> Array:
+        """The nearest possible shapes, u (N, shape)."""
+        return np.clip(u, -1, 1)
+
+    def free(self, u: Array, gradient: Array) -> Array:
+        """(N, shape, shape) projectors onto the steps that lead to possible shapes, downhill of `gradient`."""
+        return np.where((np.abs(u) >= RIM) & (gradient * u < 0), 0.0, 1.0)[..., None] * np.eye(self.shape)
+
+    def cost(self, energy: Array) -> Array:
+        """(unknowns,) [J] what equal designs should have little of, given the mean energy (unknowns,) [J]."""
+        return energy
+
+    def enlarged(self, factor: float) -> tuple[Block, Array]:
+        """The block with regions so much larger, and what that multiplies each unknown's columns by (unknowns,)."""
+        return self, np.ones(self.unknowns)

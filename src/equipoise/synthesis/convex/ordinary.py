@@ -1,0 +1,164 @@
+"""Ordinary springs: attachments, stiffness and preload that make the best of free lengths and of the room there is.
+
+A free length L0 adds ``-k L0 d/|d|`` to the force of the zero-free-length spring: no moment matrix, no bound, but small
+changes of a design that was optimal without it. Where a spring's length changes little over the workspace, L0/|d| is
+nearly constant and only weakens the spring: so one attachment moves close to its joint and the spring gets stiffer.
+
+Room is a constraint: springs are moved until nothing is nearer than it may be at the sampled poses; then the whole
+workspace is judged, and the poses where something is too near are added until there is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...balance import Balance, check
+from ...clearance import Clearance, Room
+from ...clearance import clearance as judge_room
+from ...kinematics import Tree, sample
+from ...model.elements import lines
+from ...model.errors import Fault, InfeasibleError, InputError, nearest
+from ...model.mechanism import Mechanism
+from ...model.validate import MAX_SAMPLES, whole_number
+from ..problem import Region
+from .ordinary_fit import FREE_LENGTHS, Fit
+
+ROUNDS = 8  # of adding the poses with too little room
+WEIGHT = 10  # times that such a pose counts
+
+
+@dataclass(frozen=True)
+class Ordinary:
+    """What is lost with ordinary springs.
+
+    Attributes:
+        ideal: the design with zero free length.
+        plain: the same springs with their free lengths, nothing else changed.
+        balance: with attachments, stiffness and preload optimised.
+        free_length: spring -> free length as bought [m]; what the preload makes of it stands with the spring.
+        room: before and after, when it was a constraint.
+    """
+
+    ideal: Balance
+    plain: Balance
+    balance: Balance
+    free_length: Mapping[str, float]
+    room: tuple[Clearance, Clearance] | None = None
+
+    @property
+    def mechanism(self) -> Mechanism:
+        return self.balance.mechanism
+
+    @cached_property
+    def gain(self) -> float:
+        """How many times smaller the peak residual has become."""
+        return self.plain.relative / self.balance.relative if self.balance.relative else np.inf
+
+    def to_dict(self) -> dict[str, Any]:
+        """The ``free_length`` part of ``equipoise design --json``."""
+        old = {
+            s.name: (s, use) for s, use in zip(lines(self.ideal.mechanism, FREE_LENGTHS), self.ideal.use, strict=True)
+        }
+        springs = []
+        for spring, use in zip(lines(self.mechanism, FREE_LENGTHS), self.balance.use, strict=True):
+            before, before_use = old[spring.name]
+            bought = self.free_length.get(spring.name, 0.0)
+            springs.append(
+                {
+                    "name": spring.name,
+                    "free_length": bought,
+                    "preload": spring.stiffness * (bought - spring.free_length),
+                    "stiffness": [before.stiffness, spring.stiffness],
+                    "max_force": [float(before_use.max_force), float(use.max_force)],
+                }
+            )
+        return {
+            "residual": {
+                "ideal": self.ideal.relative,
+                "plain": self.plain.relative,
+                "optimised": self.balance.relative,
+            },
+            "gain": self.gain if np.isfinite(self.gain) else None,
+            "springs": springs,
+            "clearance": None if self.room is None else [room.to_dict()["least"] for room in self.room],
+        }
+
+
+def ordinary(
+    mechanism: Mechanism,
+    free_length: float | Mapping[str, float] | None = None,
+    *,
+    clearance: float | None = None,
+    regions: Mapping[str, Region] | None = None,
+    stiffness_factor: float = 5.0,
+    preload: float = 0.0,
+    poses: int = 200,
+    seed: int = 0,
+) -> Ordinary:
+    """Make the best of a design whose springs have a free length, or need room, or both.
+
+    Args:
+        free_length: of all springs, or spring -> free length [m], and other springs stay as they are; by default all
+            springs move and have the free lengths that they have.
+        clearance: [m] what every spring keeps from other springs and from links that it is not fixed to.
+        regions: where the ends on a body may be; by default a ball as large as they are away from its origin.
+        stiffness_factor: stiffness stays between its old value over this and times this.
+        preload: the share of the free length that initial tension may take away; a rod in series may double it.
+        poses: random ones that the residual torque is minimised on, root mean square.
+
+    Raises:
+        InputError: a bad option, or no such spring.
+        InfeasibleError: no place was found with so much room.
+    """
+    lengths = _lengths(mechanism, free_length)
+    if not (1 <= stiffness_factor < np.inf and 0 <= preload <= 1):
+        raise InputError("stiffness_factor must be at least 1 and preload a share from 0 to 1")
+    if clearance is not None and not 0 <= clearance < np.inf:
+        raise InputError(Fault(("clearance",), f"must be at least 0 m, found {clearance:g}"))
+    whole_number("poses", poses, 1, MAX_SAMPLES)
+    q = sample(Tree.of(mechanism), poses, seed)
+    plain = mechanism.with_springs(
+        replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
+    )
+
+    def fitted(room: Room | None) -> Mechanism:
+        fit = Fit(mechanism, lengths, regions or {}, q, room)
+        found = [fit.solve(x, stiffness_factor, preload) for x in fit.starts(stiffness_factor)]
+        return fit.mechanism_of(min(found, key=lambda one: one[1])[0])
+
+    if clearance is None:
+        return Ordinary(check(mechanism), check(plain), check(fitted(None)), lengths)
+    before, narrow = judge_room(mechanism), q
+    least = -np.inf
+    for _ in range(ROUNDS):
+        made = fitted(Room(mechanism, narrow, clearance))
+        after = judge_room(made)
+        if after.least >= clearance:
+            return Ordinary(check(mechanism), check(plain), check(made), lengths, (before, after))
+        least = max(least, after.least)
+        close = [gap.configuration for gap in after.gaps if gap.distance < clearance]
+        narrow = np.concatenate([narrow, *[np.repeat(at[None], WEIGHT, axis=0) for at in close]])
+    raise InfeasibleError(
+        f"no attachments were found that keep {1e3 * clearance:.4g} mm: the best come as near as {1e3 * least:.4g} mm; "
+        "allow less, larger regions, or springs between other bodies"
+    )
+
+
+def _lengths(mechanism: Mechanism, given: float | Mapping[str, float] | None) -> dict[str, float]:
+    names = tuple(spring.name for spring in mechanism.springs)
+    if not names:
+        raise InputError(f"mechanism '{mechanism.name}' has no springs that could have a free length")
+    if given is None:
+        return {spring.name: spring.free_length for spring in lines(mechanism, FREE_LENGTHS)}
+    lengths = dict(given) if isinstance(given, Mapping) else dict.fromkeys(names, float(given))
+    for name, value in lengths.items():
+        if name not in names:
+            raise InputError(Fault(("free_length",), f"there is no spring {nearest(name, names)}", names))
+        if not 0 < value < np.inf:
+            raise InputError(Fault(("free_length", name), f"must be more than 0 m, found {value:g}"))
+    return lengths

@@ -1,0 +1,114 @@
+"""The peak objective: the largest torque over random poses, bounded and polished by cutting planes.
+
+Only the poses that matter are kept: solve for some, look for the worst among all, add those, repeat. A bound from some
+poses is a bound for all, so stopping early never makes it wrong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...kinematics import Tree, sample
+from ...model.arrays import Array
+from .least_squares_form import Gram, torque_rows
+from .polish import Parts, jacobian, residual
+from .semidefinite import Bound, least_peak
+
+FIRST = 600  # rows (pose and coordinate) of the first round
+CUTS = 100  # rows added per round
+ROUNDS = 12
+CLOSE = 1e-3  # relative: the worst pose of all is this close to the worst of the chosen ones
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The torques of a problem at random poses, one row per pose and coordinate.
+
+    Every torque is linear in the same few numbers ``w = gram.times(x)`` as the mean square, so a row is short.
+
+    Attributes:
+        L: (rows, len(w)), load: (rows,): the torque is ``L w + load``, as a share of `unbalanced`.
+        unbalanced: [N m] the largest torque without any parts.
+    """
+
+    gram: Gram
+    L: Array
+    load: Array
+    unbalanced: float
+
+    @staticmethod
+    def of(gram: Gram) -> Peak:
+        """The rows over random poses inside the joint ranges."""
+        problem = gram.problem
+        to_w = np.linalg.pinv(np.concatenate(gram.columns, axis=1))
+        L, load = [], []
+        q = sample(Tree.of(problem.judged), problem.count, problem.seed)
+        for T, torque, _ in torque_rows(problem, gram.blocks, q):
+            L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(gram.d)))
+            load.append((torque * problem.scale).ravel())
+        every = np.concatenate(load)
+        unit = float(np.abs(every).max()) or 1.0
+        return Peak(gram, np.concatenate(L) / unit, every / unit, unit)
+
+    def torque(self, parts: Parts) -> Array:
+        """(rows,) torque with a set of parts (batch of 1)."""
+        return self.L @ (residual(self.gram, parts)[0] - self.gram.d) + self.load
+
+    def bound(self) -> Bound:
+        """The least peak that any parts of the blocks can leave at these poses."""
+        chosen = np.zeros(len(self.load), bool)
+        chosen[np.random.default_rng(0).permutation(len(self.load))[:FIRST]] = True
+        chosen[np.argsort(-np.abs(self.load))[:CUTS]] = True
+        best = least_peak(self.gram, self.L[chosen], self.load[chosen])
+        for _ in range(ROUNDS):
+            torque = np.abs(self.L @ self.gram.times(best.x) + self.load)
+            if torque.max() <= best.value * (1 + CLOSE) + 1e-9:
+                break
+            chosen[np.argsort(-torque)[:CUTS]] = True
+            best = least_peak(self.gram, self.L[chosen], self.load[chosen])
+        return best
+
+    def polish(self, start: Parts) -> tuple[Parts, float]:
+        """Lower the peak of one set of parts (batch of 1) under the true constraints: a sequence of linear programs.
+
+        Each program minimises the linearised peak within a trust region; a step that does not lower the true peak
+        shrinks the region.
+        """
+        from scipy.optimize import linprog
+
+        now, trust = start, 0.3
+        tau = self.torque(now)
+        value = float(np.abs(tau).max())
+        chosen = np.zeros(len(tau), bool)
+        for _ in range(20 * ROUNDS):
+            if trust < 1e-7:
+                break
+            chosen[np.argsort(-np.abs(tau))[:CUTS]] = True
+            slopes = jacobian(self.gram, now)[0]  # (parts, 1 + shape, len(w))
+            J = self.L[chosen] @ slopes.reshape(-1, slopes.shape[-1]).T
+            one = np.ones((len(J), 1))
+            lower, upper = np.full(slopes.shape[:2], -trust), np.full(slopes.shape[:2], trust)
+            lower[:, 1:], upper[:, 1:] = np.maximum(-trust, -1 - now.u[0]), np.minimum(trust, 1 - now.u[0])
+            program = linprog(
+                np.append(np.zeros(J.shape[1]), 1.0),
+                np.vstack([np.hstack([J, -one]), np.hstack([-J, -one])]),
+                np.concatenate([-tau[chosen], tau[chosen]]),
+                bounds=[*zip(lower.ravel(), upper.ravel(), strict=True), (0, None)],
+            )
+            if program.x is None:
+                break
+            trial = now.moved(self.gram, program.x[:-1].reshape(1, *lower.shape))
+            tau_trial = self.torque(trial)
+            new = float(np.abs(tau_trial).max())
+            if new < value:
+                trust = min(1.0, trust * 1.5) if value - new > 0.5 * (value - program.x[-1]) else trust
+                stalled = value - new < 1e-7 * value
+                now, tau, value = trial, tau_trial, new
+                if stalled:
+                    break
+            else:
+                chosen[np.argsort(-np.abs(tau_trial))[:CUTS]] = True
+                trust *= 0.4
+        return now, value

@@ -1,0 +1,132 @@
+"""The least torque that any choice of parts can leave: a convex program (THEORY sections 1 and 4).
+
+Unknowns are those of the blocks, each in its cone. Any set of parts, however many, is a feasible point, so the optimum
+is a lower bound for every design on these blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import isqrt
+from typing import Any
+
+import numpy as np
+
+from ...model.arrays import Array, Integers
+from ...model.errors import EquipoiseError
+from .least_squares_form import Gram
+
+STALLED = 1e-4  # violation of the constraints that is still close to the optimum
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The least torque that any parts of the blocks can leave.
+
+    Attributes:
+        value: as a share of the unbalanced torque (rms or peak): the lesser of the program's primal and dual optimum,
+            valid up to the solver's tolerance.
+        x: the unknowns of each block that (nearly) reach it.
+    """
+
+    value: float
+    x: tuple[Array, ...]
+
+
+class Program:
+    """The blocks' unknowns in their cones, and `extra` more at the end; then rows ``b - A x`` in cones of their own.
+
+    Each block's unknowns are in a unit that makes its columns of size one.
+    """
+
+    def __init__(self, gram: Gram, extra: int) -> None:
+        self.scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in gram.columns]
+        self.starts = np.cumsum([0, *(block.unknowns for block in gram.blocks)]).tolist()
+        self.width = self.starts[-1] + extra
+        self.columns = [  # as pieces of rows
+            (0, start, own * scale) for start, own, scale in zip(self.starts, gram.columns, self.scale, strict=False)
+        ]
+        self.entries: list[tuple[Integers, Integers, Array]] = []
+        self.b: list[Array] = []
+        self.cones: list[object] = []
+        self.height = 0
+        for block, start, scale in zip(gram.blocks, self.starts, self.scale, strict=False):
+            for cone in block.cones():
+                g = np.zeros(len(cone.F)) if cone.g is None else cone.g / scale
+                self.add(cone.kind, g, [(0, start, -cone.F)])
+
+    def add(self, kind: str, b: Array, pieces: Iterable[tuple[int, int, Array]]) -> None:
+        """Rows with ``b - A x`` in a cone; A is zero but for pieces (its first row, its first unknown, the piece)."""
+        for row, start, A in pieces:
+            i, j = np.nonzero(A)
+            self.entries.append((i + self.height + row, j + start, A[i, j]))
+        self.b.append(b)
+        self.cones.append(_cone(kind, len(b)))
+        self.height += len(b)
+
+    def solve(self) -> Bound:
+        """Minimise the last unknown.
+
+        Raises:
+            EquipoiseError: the solver stopped far from the optimum.
+        """
+        from scipy import sparse
+
+        clarabel = _solver()
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_threads = 1
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
+        n, (i, j, values) = self.width, (np.concatenate(part) for part in zip(*self.entries, strict=True))
+        A, b = sparse.csc_matrix((values, (i, j)), (self.height, n)), np.concatenate(self.b)
+        objective = np.append(np.zeros(n - 1), 1.0)
+        solution = clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, self.cones, settings).solve()
+        # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay safe
+        violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
+        if not violation < STALLED:
+            raise EquipoiseError(
+                f"the convex solver stopped with '{solution.status}': the problem is badly scaled; try a larger radius"
+            )
+        parts = np.split(np.array(solution.x)[: self.starts[-1]], self.starts[1:-1])
+        x = tuple(own * scale for own, scale in zip(parts, self.scale, strict=True))
+        return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), x)
+
+
+def least_rms(gram: Gram) -> Bound:
+    """The bound for the root mean square torque of all joints together (rest included)."""
+    program = Program(gram, extra=1)
+    t = program.width - 1
+    norm = np.concatenate([[0.0], gram.d, [gram.rest]])
+    columns = [(1, start, -own) for _, start, own in program.columns]
+    program.add("second order", norm, [*columns, (0, t, -np.eye(1))])
+    return program.solve()
+
+
+def least_peak(gram: Gram, L: Array, load: Array) -> Bound:
+    """The bound for the largest of the torques ``|L w + load|`` with ``w = gram.times(x)``.
+
+    Args:
+        L: (rows, len(w)), load: (rows,), as shares of any unit: see `minimax.Peak`.
+    """
+    r = L.shape[1]
+    program = Program(gram, extra=r + 1)  # w, and the peak t
+    w, t = program.width - r - 1, program.width - 1
+    program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
+    for sign in (1.0, -1.0):
+        program.add("nonnegative", -sign * load, [(0, w, sign * L), (0, t, -np.ones((len(load), 1)))])
+    return program.solve()
+
+
+def _cone(kind: str, rows: int) -> object:
+    clarabel = _solver()
+    if kind == "semidefinite":
+        return clarabel.PSDTriangleConeT((isqrt(8 * rows + 1) - 1) // 2)
+    name = {"zero": "ZeroConeT", "nonnegative": "NonnegativeConeT", "second order": "SecondOrderConeT"}[kind]
+    return getattr(clarabel, name)(rows)
+
+
+def _solver() -> Any:
+    import clarabel  # a compiled module without type information
+
+    return clarabel
