@@ -35,7 +35,13 @@ def test_every_message_has_its_file():
     assert {path.stem for path in FILES} == {path.stem for path in FOLDER.glob("*.txt")}
 
 
-@pytest.mark.parametrize("name", ["arm.sdf", "arm.json", "arm"])
+@pytest.mark.parametrize("name", ["arm.stl", "arm.json", "arm"])
 def test_other_suffixes_are_refused_with_the_choices(name):
     with pytest.raises(InputError, match=r"valid: \.yaml, \.yml, \.urdf, \.xml, \.mjcf"):
+        io.load(name)
+
+
+@pytest.mark.parametrize(("name", "tool"), [("arm.sdf", "sdf2mjcf"), ("arm.urdf.xacro", "xacro FILE > robot.urdf")])
+def test_what_can_be_turned_into_a_mechanism_file_is_refused_with_the_tool(name, tool):
+    with pytest.raises(InputError, match=f"a mechanism file cannot be .*: .*{tool}"):
         io.load(name)

@@ -12,6 +12,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from engine import Engine
 from loop_zoo import delta, four_bar, spatial_parallelogram
 from random_mechanisms import random_mechanism, random_poses
 from zoo import ZOO, exact_pendulum
@@ -204,14 +205,10 @@ def test_equalities(tmp_path):
     ("inside", "more", "message"),
     [
         ("", spring('stiffness="100" springlength="0 0.2"'), "tendon 's' is slack from 0 to 0.2 m"),
-        (f'<body name="hand"><joint name="w" stiffness="3"/>{ONE_KG}</body>', "",
-         "joint 'w' has a torsion spring"),
         (f'<body name="hand"><joint name="w"/>{ONE_KG}</body>',
          '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
-        (f'<body name="hand" gravcomp="1">{ONE_KG}</body>', "",
-         "body 'hand' has gravity compensation"),
-        (f'<body name="hand" pos="1 0 0"><joint name="w"/>{ONE_KG}</body>',
-         '<equality><weld name="w" body1="hand"/></equality>', "equality 'w' is no connect"),
+        ("", '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><site site="hook"/>'
+         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring that does not run straight"),
     ],
 )  # fmt: skip
 def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):
@@ -221,7 +218,7 @@ def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):
 
 def test_a_free_body_is_refused(tmp_path):
     world = f'<body name="ball"><freejoint name="f"/>{ONE_KG}</body>'
-    with pytest.raises(InputError, match="joint 'f' is free"):
+    with pytest.raises(InputError, match=r"robot.xml:4: joint 'f' is free, and nothing holds .* --base fixed"):
         read(tmp_path, "", world=world)
 
 
@@ -247,3 +244,163 @@ def test_command_line(run, tmp_path):
     code, text, _ = run("check", tmp_path / "robot.xml")
     assert code == 0
     assert "EXACT" in text
+
+
+def spoken(folder: Path, *arguments: str, base: str | None = None) -> tuple[eq.Mechanism, str]:
+    """A model, and what is said while it is read."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        read(folder, *arguments)
+        m = eq.load(folder / "robot.xml", base=base)
+    return m, "\n".join(dict.fromkeys(str(one.message) for one in caught))
+
+
+@pytest.mark.parametrize(
+    ("inside", "more", "message"),
+    [
+        (f'\n<body name="hand"><joint name="w" type="slide" stiffness="3"/>{ONE_KG}</body>', "",
+         "joint 'w' (line 7): the spring (stiffness) of a joint that is no hinge is left out"),
+        (f'<body name="hand"><joint name="w" stiffness="3 1"/>{ONE_KG}</body>', "",
+         "joint 'w' (line 6): what is curved in a joint's spring"),
+        (f'\n<body name="hand" gravcomp="1"><joint/>{ONE_KG}</body>', "",
+         "body 'hand' (line 7): gravity compensation (gravcomp) is left out"),
+        ("", '<option wind="1 0 0" density="1.2"/>', "<option wind>: the force of wind is left out"),
+        ("", '<option><flag spring="disable"/></option>' + spring('stiffness="3"'), "springs off: it is heeded"),
+        ("", '<option><flag gravity="disable"/></option>', "gravity off: it is heeded"),
+        (f'<body name="hand"><joint name="w" range="0 9" limited="true"/>{ONE_KG}</body>',
+         '<option><flag limit="disable"/></option>', "ranges of joints off: it is heeded"),
+        ("", spring('limited="true" range="0 1"'), "tendon 's' (line 6): limits of a tendon's length are left out"),
+        ("", '<actuator><general name="pull" joint="shoulder" gainprm="0" biastype="affine" biasprm="3"/></actuator>',
+         "actuator 'pull' (line 6): what it pulls without being told to is left out"),
+        (f'<body name="hand"><joint name="w" type="ball" range="0 40" limited="true"/>{ONE_KG}</body>', "",
+         "joint 'w' (line 6): limits of a ball joint are left out"),
+    ],
+)  # fmt: skip
+def test_what_acts_and_is_left_out_or_heeded_is_named(tmp_path, inside, more, message):
+    assert message in spoken(tmp_path, inside, more)[1]
+
+
+def test_flags_are_heeded(tmp_path):
+    off = '<option><flag {}="disable"/></option>'
+    assert spoken(tmp_path, "", off.format("gravity"))[0].gravity == (0, 0, 0)
+    assert not spoken(tmp_path, "", off.format("spring") + spring('stiffness="100"'))[0].springs
+    limited = f'<body name="hand"><joint name="w" range="0 9" limited="true"/>{ONE_KG}</body>'
+    assert spoken(tmp_path, limited, off.format("limit"))[0].joints[-1].range is None
+    lock = '<equality><joint joint1="shoulder" polycoef="0.05 0 0 0 0"/></equality>'
+    for flag in ("equality", "constraint"):
+        assert spoken(tmp_path, "", off.format(flag) + lock)[0].joints[0].range is None
+
+
+def test_a_free_body_can_be_held_or_set_free(tmp_path):
+    path = tmp_path / "robot.xml"
+    path.write_text(
+        f"""<mujoco><worldbody><body name="trunk" pos="1 2 3" euler="0 0 30"><freejoint name="f"/>{ONE_KG}
+        <body name="leg"><joint name="hip" axis="0 1 0"/>{ONE_KG}</body></body></worldbody></mujoco>"""
+    )
+    with pytest.raises(InputError, match="joint 'f' is free"):
+        eq.load(path)
+    held = eq.load(path, base="fixed")
+    assert held.coordinates == ("hip",)
+    poses = Tree.of(held).poses(np.zeros((1, 1)))
+    np.testing.assert_allclose(poses.p[0, Tree.of(held).index["trunk"]], (1, 2, 3))
+    loose = eq.load(path, base="free")
+    assert loose.coordinates == ("f x", "f y", "f z", "f.x", "f.y", "f.z", "hip")
+    weight = Potential(loose)(np.zeros((1, 7))).torque[0]
+    np.testing.assert_allclose(weight[:3], (0, 0, 2 * 9.81), atol=1e-12)
+    assert str(Tree.of(loose).turns.tolist()) == str([False] * 3 + [True] * 4)
+
+
+def test_a_weld_holds_a_free_body(tmp_path):
+    path = tmp_path / "robot.xml"
+    path.write_text(
+        f"""<mujoco><worldbody><body name="post" pos="0 0 1" euler="0 20 0"/>
+        <body name="trunk" pos="1 2 3" euler="0 0 30"><freejoint name="f"/>{ONE_KG}
+        <body name="leg"><joint name="hip" axis="0 1 0"/>{ONE_KG}</body></body></worldbody>
+        <equality><weld body1="trunk" body2="post" relpose="0.1 0.2 0.3 0.9 0.1 0.2 0.3" anchor="0.2 0 0"/></equality>
+        </mujoco>"""
+    )
+    m = eq.load(path)
+    assert m.coordinates == ("hip",)
+    assert not m.loops
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    data.qpos[:] = Engine(path, m).qpos(np.zeros((1, 1)))[0]
+    mujoco.mj_forward(model, data)
+    assert np.abs(data.efc_pos[data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)]).max() < 1e-12
+
+
+ROD = """<body name="{0}" pos="{1} 0 0"><joint name="{2}" axis="0 1 0" range="-80 80"/>
+<geom type="capsule" fromto="0 0 0 0 0 0.3" size="0.01" mass="0.2"/></body>"""
+TABLE = f"""<mujoco><worldbody>{ROD.format("r1", 0.3, "j1")}{ROD.format("r2", -0.3, "j2")}
+<body name="table" pos="0 0 0.3"><freejoint name="table"/><geom type="box" size="0.3 0.1 0.01" mass="4"/></body>
+</worldbody><equality>{{}}</equality>{{}}</mujoco>"""
+CONNECT = '<connect body1="{}" body2="table" anchor="{} {} 0.3"/>'
+HINGES = "".join(CONNECT.format(rod, 0, y) for rod in ("r1", "r2") for y in (0.05, -0.05))
+
+
+def test_a_free_body_that_loops_hold(tmp_path):
+    (tmp_path / "table.xml").write_text(TABLE.format(HINGES, ""))
+    balance = eq.check(eq.load(tmp_path / "table.xml"), samples=200)
+    assert balance.coordinates == ("j1",)
+    assert balance.unbalanced.max == pytest.approx([9.81 * (2 * 0.2 * 0.15 + 4 * 0.3) * np.sin(np.radians(80))])
+
+
+def test_the_joint_with_an_actuator_steers(tmp_path):
+    (tmp_path / "table.xml").write_text(TABLE.format(HINGES, '<actuator><motor joint="j2"/></actuator>'))
+    m = eq.load(tmp_path / "table.xml")
+    assert m.independent == ("j2",)
+    assert Tree.of(m).coordinates == ("j2",)
+
+
+def test_more_than_two_points_and_a_weld_are_loops_too(tmp_path):
+    """A table that a weld, or four points, hold on one rod turns with it."""
+    four = "".join(CONNECT.format("r1", x, y) for x in (-0.1, 0.1) for y in (0, 0.1))
+    for equalities in (four, '<weld body1="r1" body2="table"/>', '<weld body1="table" body2="r1" anchor="0.1 0 0"/>'):
+        (tmp_path / "table.xml").write_text(TABLE.format(equalities, ""))
+        balance = eq.check(eq.load(tmp_path / "table.xml"), samples=200)
+        assert balance.coordinates == ("j1", "j2")
+        arm = np.hypot(0.2 * 0.15 + 4 * 0.3, 4 * 0.3)  # the table's centre is 0.3 m aside, and 0.3 m above
+        assert balance.unbalanced.max == pytest.approx(
+            [9.81 * arm, 9.81 * 0.2 * 0.15 * np.sin(np.radians(80))], rel=1e-6
+        )
+
+
+def test_a_keyframe_says_how_loops_close(tmp_path):
+    """Loops that are open as the model is drawn, far from any pose that the solver would think of by itself."""
+    model = """<mujoco><compiler angle="radian"/><worldbody>
+    <body name="crank"><joint name="drive" axis="0 -1 0"/>{0}
+    <body name="coupler" pos=".1 0 0"><joint name="pin" axis="0 -1 0"/>{0}
+    <site name="a" pos=".4 0 0"/></body></body>
+    <body name="rocker" pos=".35 0 0"><joint name="post" axis="0 -1 0"/>{0}
+    <site name="b" pos=".3 0 0"/></body></worldbody>
+    <equality><connect site1="a" site2="b"/></equality>
+    <keyframe><key name="open" qpos="0 0 0"/><key name="home" qpos="{1}"/></keyframe></mujoco>"""
+    found = []
+    for up in (1, -1):
+        # crank along x, the triangle of coupler 0.4 m, rocker 0.3 m and ground 0.25 m above it or below
+        x = (0.4**2 - 0.3**2 + 0.25**2) / (2 * 0.25)
+        z = up * np.sqrt(0.4**2 - x**2)
+        (tmp_path / "fourbar.xml").write_text(model.format(ONE_KG, f"0 {np.arctan2(z, x)} {np.arctan2(z, x - 0.25)}"))
+        m = eq.load(tmp_path / "fourbar.xml")
+        tree = Tree.of(m)
+        assert isinstance(tree, Linkage)
+        np.testing.assert_allclose(tree.branch.assembled, [v for _, v in m.assembly], atol=1e-3)
+        found.append(dict(m.assembly)["pin"])
+    assert found[0] == pytest.approx(-found[1])
+    assert found[0] > 0.5
+
+
+def test_equalities_with_what_a_program_moves_are_left_out(tmp_path):
+    """A hand that follows a mocap body is held by nothing when no program runs."""
+    inside = f'<body name="hand" pos="0.4 0 0"><joint name="w"/>{ONE_KG}</body>'
+    world = '<body name="target" mocap="true" pos="0.4 0 0"/>'
+    with pytest.warns(EquipoiseWarning, match="equality 0: what ties it to a mocap body"):
+        m = read(tmp_path, inside, '<equality><weld body1="hand" body2="target"/></equality>', world)
+    assert not m.loops
+    assert m.coordinates == ("shoulder", "w")
+
+
+def test_a_tendon_that_holds_nothing_is_no_coupling(tmp_path):
+    tendon = '<tendon><fixed name="f"><joint joint="shoulder" coef="0"/></fixed></tendon>'
+    m = read(tmp_path, "", tendon + '<equality><tendon tendon1="f"/></equality>')
+    assert m.couplings == ()

@@ -34,7 +34,7 @@ def check(
     from . import options
 
     share, torque = options.tolerance(tolerance)
-    mechanism = terminal.load(file)
+    mechanism = terminal.load(file, weightless=payload is not None)
     if torque is not None and not Tree.of(mechanism).turns.all():
         raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
     if payload is not None and payload_on is None:

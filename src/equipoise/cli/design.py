@@ -129,6 +129,7 @@ def design(
     if room is None and thick is not None:
         raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
+    options.sizes(mechanism, given.get("radius"), given.get("regions", {}))
     if output:
         check_savable(output)  # before the work, not after it
     if plot:

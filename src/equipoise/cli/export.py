@@ -44,7 +44,7 @@ def export(
     if output is not None:
         check_writable(output)
     with terminal.shown_warnings():
-        mechanism = terminal.load(file)
+        mechanism = terminal.load(file, weightless=True)
         write = import_module(modules[to]).to_text
         text = write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
     if output is None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from ..model import slips
 from ..model.errors import Fault, InputError, nearest
 from ..model.units import quantity, to_share, to_si
 from ..synthesis import Parameter, Region
+from . import terminal
 
 if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
@@ -45,6 +47,7 @@ def payload(mechanism: Mechanism, masses: str, body: str, place: str) -> Payload
     point = [length(text, "--payload-at") for text in place.split(",")]
     if len(bounds) != 2 or len(point) != 3:
         raise InputError("--payload: expected LOW,HIGH such as 0,2kg, and --payload-at X,Y,Z such as 0,0,50mm")
+    terminal.slip(slips.twice(mechanism, body, point))
     return Payload.at(mechanism, bounds, body, point)
 
 
@@ -119,6 +122,13 @@ def pairs(text: str, option: str = "--pairs") -> list[tuple[str, str]]:
             raise InputError(Fault((option,), f"expected A:B,C:D with names of bodies, found '{part.strip()}'"))
         found.append((names[0], names[1]))
     return found
+
+
+def sizes(mechanism: Mechanism, radius: float | None, regions: dict[str, Region]) -> None:
+    """Say which radius is far beyond the mechanism's reach."""
+    given = {"--radius": radius or 0.0}
+    given |= {f"--region {body}": max(region.half) for body, region in regions.items()}
+    terminal.slip([message for name, value in given.items() for message in slips.far(mechanism, value, name)])
 
 
 def regions(texts: list[str], box: bool) -> dict[str, Region]:

@@ -14,17 +14,47 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..model.errors import EquipoiseWarning, visible
+from .app import reading
 
 if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
     from ..model.progress import Progress
 
 
-def load(file: Path) -> Mechanism:
-    from ..io import load
+def load(file: Path, *, weightless: bool = False) -> Mechanism:
+    """The mechanism of a command's file; what looks wrong in it is said, and bad input with ``--strict``.
 
-    with shown_warnings():
-        return load(file)
+    Args:
+        weightless: whether a mechanism will do in which nothing that moves has a mass.
+
+    Raises:
+        InputError: as `io.load`; something looks wrong and may not; nothing that moves has a mass.
+    """
+    from ..io import load
+    from ..model import slips
+    from ..model.errors import Fault, InputError
+
+    with shown_warnings() as said:
+        mechanism = load(file, base=reading["base"])
+    if slips.weightless(mechanism) and not weightless:
+        raise InputError(Fault((), "nothing that moves has a mass: there is nothing to balance", file=str(file)))
+    if said and reading["strict"]:
+        raise InputError(Fault((), f"{len(said)} warning{'s' * (len(said) > 1)}, and --strict", file=str(file)))
+    return mechanism
+
+
+def slip(messages: list[str]) -> None:
+    """Say what looks like a slip on the command line.
+
+    Raises:
+        InputError: something does, and ``--strict`` is given.
+    """
+    from ..model.errors import InputError
+
+    for message in messages:
+        say(f"warning: {message}")
+    if messages and reading["strict"]:
+        raise InputError("a warning, and --strict")
 
 
 def typed(context: typer.Context, option: str) -> bool:
@@ -34,12 +64,12 @@ def typed(context: typer.Context, option: str) -> bool:
 
 
 @contextmanager
-def shown_warnings() -> Iterator[None]:
-    """Our warnings as lines on standard error."""
+def shown_warnings() -> Iterator[list[warnings.WarningMessage]]:
+    """Our warnings as lines on standard error, when the block ends; gives the list that they are in then."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", EquipoiseWarning)
         try:
-            yield
+            yield caught
         finally:
             for warning in caught:
                 say(f"warning: {warning.message}")

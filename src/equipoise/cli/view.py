@@ -30,7 +30,7 @@ def view(
     """
     from ..viewer.server import Viewer
 
-    mechanism = terminal.load(file)
+    mechanism = terminal.load(file, weightless=True)
     with terminal.shown_warnings():
         viewer = Viewer(mechanism, output or Path(f"{file.stem}-edited.yaml"), host=host, port=port, source=file)
     typer.echo(f"{mechanism.name} is at {viewer.url} - stop with Ctrl-C")

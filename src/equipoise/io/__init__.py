@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..model.errors import Fault, InputError
+from ..model.errors import Fault, InputError, SlipWarning
 from . import models
 
 if TYPE_CHECKING:
@@ -16,22 +17,48 @@ YAML_SUFFIXES = (".yaml", ".yml")
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
 
-def load(path: str | os.PathLike[str]) -> Mechanism:
+def load(path: str | os.PathLike[str], *, base: str | None = None) -> Mechanism:
     """Read a mechanism file; the suffix says which kind: .yaml or .yml, .urdf, .mjcf.
 
     In a file .xml the root element says it.
 
+    Args:
+        base: "fixed" holds every body of a model that floats where it is drawn; "free" lets those float, and sets
+            free what is fixed to the world and carries joints. None reads what is there.
+
     Raises:
         InputError: everything that is wrong with the file, with file, line and column.
+
+    Warns:
+        EquipoiseWarning: for what is read otherwise than it stands there, or not at all.
+        SlipWarning: for what looks like a slip (see `slips`).
     """
+    from ..model.slips import slips
+
+    if base not in (None, "fixed", "free"):
+        raise InputError(Fault(("base",), f"unknown value '{base}'", ("fixed", "free")))
+    mechanism = read(path, base)
+    if base == "free":
+        from .freed import free_base
+
+        mechanism = free_base(mechanism)
+    for message in slips(mechanism):
+        warnings.warn(str(Fault((), message, file=os.fspath(path))), SlipWarning, stacklevel=2)
+    return mechanism
+
+
+def read(path: str | os.PathLike[str], base: str | None) -> Mechanism:
+    """`load`, without looking for slips."""
     suffix = Path(path).suffix.lower()
     if suffix in YAML_SUFFIXES:
         from . import yaml
 
-        return yaml.read(path)
+        return yaml.read(path, base)
     if suffix in models.MODEL_SUFFIXES:
-        return models.read(path)
+        return models.read(path, base)
     found = f"a mechanism file cannot be {_suffix(path)}"
+    if suffix in models.CONVERTED:
+        raise InputError(Fault((), f"{found}: {models.CONVERTED[suffix]}", file=os.fspath(path)))
     raise InputError(Fault((), found, (*YAML_SUFFIXES, *models.MODEL_SUFFIXES), file=os.fspath(path)))
 
 

@@ -1,56 +1,105 @@
-"""What joins the bodies of an MJCF model beside its tree: couplings, loops and springs. See `mjcf_read`."""
+"""What joins the bodies of an MJCF model beside its tree: couplings, loops and springs. See `mjcf_read`.
+
+A weld is three points, as two connects are a hinge.
+"""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's names come from a compiled module that ships no type stubs)
 
 from __future__ import annotations
 
-from collections import defaultdict
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from ..model.arrays import Array, frozen
+from ..model.arrays import Array, frozen, vec3
 from ..model.elements import Element, Spring, TorsionSpring, Vec3
 from ..model.mechanism import Coupling, Loop
+from ..model.rotation import from_quaternion
+from .mjcf import HINGE_ARM
+from .mjcf_acts import Model
 from .text import Names
 
 Places = dict[int, tuple[str, Array]]
 """A body of the engine: which body of ours has its frame, and where its origin is there (a point mass has none)."""
+Held = Mapping[int, tuple[int, Array, Array]]
+"""A free joint -> the weld that holds its body, and the body's orientation and position [m] in the world."""
 
 
 @frozen
 class Between:
-    """Reads them; what has no counterpart is added to `faults`.
+    """Reads them; what has no counterpart is refused in `source.notes`.
 
     Attributes:
-        mj, model: the engine, and the compiled model.
+        source: the compiled model.
         joint_of: the engine's number of a joint -> our name.
     """
 
-    mj: Any
-    model: Any
+    source: Model
     place: Places
     joint_of: dict[int, str]
-    faults: list[str]
 
     def _point(self, site: int) -> tuple[str, Vec3]:
-        body, origin = self.place[int(self.model.site_bodyid[site])]
-        return body, vec3(origin + self.model.site_pos[site])
+        model = self.source.model
+        body, origin = self.place[int(model.site_bodyid[site])]
+        return body, vec3(origin + model.site_pos[site])
+
+    def _equalities(self, *kinds: str) -> Iterator[tuple[int, int, int]]:
+        """Numbers of the active equalities of these kinds, and of the two objects that each joins."""
+        mj, model = self.source.mj, self.source.model
+        wanted = [int(getattr(mj.mjtEq, f"mjEQ_{kind}")) for kind in kinds]
+        for i in np.flatnonzero(model.eq_active0) if not self.source.off("equality", "constraint") else ():
+            if int(model.eq_type[i]) in wanted:
+                yield int(i), int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
+
+    def _ends(self, i: int, a: int, b: int) -> tuple[int, Array, Array, int, Array, Array]:
+        """Of a connect or weld: each end's body, its point there, and the orientation that a weld gives both."""
+        mj, model, welded = self.source.mj, self.source.model, self.source.model.eq_data[i, 6:10]
+        if model.eq_objtype[i] == int(mj.mjtObj.mjOBJ_SITE):
+            (A, p_a, R_a), (B, p_b, R_b) = ((int(model.site_bodyid[s]), model.site_pos[s],
+                                             from_quaternion(model.site_quat[s])) for s in (a, b))  # fmt: skip
+            return A, p_a, R_a, B, p_b, R_b
+        data = model.eq_data[i]
+        if int(model.eq_type[i]) == int(mj.mjtEq.mjEQ_CONNECT):
+            return a, data[:3], np.eye(3), b, data[3:6], np.eye(3)
+        return a, data[3:6], from_quaternion(welded), b, data[:3], np.eye(3)
+
+    def held(self) -> Held:
+        """The free joints of bodies that are welded to one that does not move."""
+        model, found = self.source.model, dict[int, tuple[int, Array, Array]]()
+        free = int(self.source.mj.mjtJoint.mjJNT_FREE)
+        for i, a, b in self._equalities("WELD"):
+            A, p_a, R_a, B, p_b, R_b = self._ends(i, a, b)
+            for body, p, R, other, q, T in ((A, p_a, R_a, B, p_b, R_b), (B, p_b, R_b, A, p_a, R_a)):
+                j = int(model.body_jntadr[body])
+                still = self._still(other)
+                if j >= 0 and int(model.jnt_type[j]) == free and still is not None and j not in found:
+                    S, s = still
+                    turn = S @ T @ R.T
+                    found[j] = i, turn, s + S @ q - turn @ p
+        return found
+
+    def _still(self, body: int) -> tuple[Array, Array] | None:
+        """Where a body is whose ancestors have no joints."""
+        model, R, p = self.source.model, np.eye(3), np.zeros(3)
+        while body:
+            if model.body_jntnum[body]:
+                return None
+            turn = from_quaternion(model.body_quat[body])
+            R, p = turn @ R, model.body_pos[body] + turn @ p
+            body = int(model.body_parentid[body])
+        return R, p
 
     def couplings(self) -> tuple[tuple[Coupling, ...], dict[str, float]]:
-        mj, model = self.mj, self.model
+        mj, model = self.source.mj, self.source.model
         found: list[Coupling] = []
         locked: dict[str, float] = {}
-        for i in range(model.neq):
-            kind, name = int(model.eq_type[i]), model.eq(i).name or f"equality {i}"
-            a, b, c = int(model.eq_obj1id[i]), int(model.eq_obj2id[i]), model.eq_data[i, :5]
-            joint, tendon = int(mj.mjtEq.mjEQ_JOINT), int(mj.mjtEq.mjEQ_TENDON)
-            if kind not in (joint, tendon) or not model.eq_active0[i]:
-                continue
+        for i, a, b in self._equalities("JOINT", "TENDON"):
+            c = model.eq_data[i, :5]
             if np.any(c[2:]):
-                self.faults.append(f"equality '{name}' is curved (polycoef): a coupling is linear")
-            elif kind == joint:
+                self.source.refuse("equality", i, "is curved (polycoef): a coupling is linear")
+            elif int(model.eq_type[i]) == int(mj.mjtEq.mjEQ_JOINT):
                 zero = [float(model.qpos0[model.jnt_qposadr[j]]) if j >= 0 else 0.0 for j in (a, b)]
                 if b < 0:
                     locked[self.joint_of[a]] = float(c[0]) + zero[0]
@@ -58,89 +107,99 @@ class Between:
                     offset = float(c[0]) + zero[0] - float(c[1]) * zero[1]
                     found.append(Coupling(self.joint_of[a], ((self.joint_of[b], float(c[1])),), offset))
             elif b >= 0 or int(model.wrap_type[model.tendon_adr[a]]) != int(mj.mjtWrap.mjWRAP_JOINT):
-                self.faults.append(f"equality '{name}' is of two tendons or of one in space: it has no counterpart")
+                self.source.refuse("equality", i, "is of two tendons or of one in space: it has no counterpart")
             else:
                 first = int(model.tendon_adr[a])
                 terms = [
                     (self.joint_of[int(model.wrap_objid[k])], float(model.wrap_prm[k]))
                     for k in range(first, first + int(model.tendon_num[a]))
+                    if model.wrap_prm[k]
                 ]
+                if not terms:
+                    continue  # coefficients of zero hold nothing
                 (dependent, ratio), *others = terms
-                if not ratio:
-                    self.faults.append(f"equality '{name}' holds a tendon whose first joint has the coefficient 0")
-                    continue
                 length = float(c[0]) + float(model.tendon_length0[a])
                 rest = tuple((other, -coef / ratio) for other, coef in others)
                 found.append(Coupling(dependent, rest, length / ratio))
         return tuple(found), locked
 
-    def loops(self) -> tuple[Loop, ...]:
-        mj, model = self.mj, self.model
-        ends: dict[tuple[str, str], list[tuple[Vec3, Vec3]]] = defaultdict(list)
-        for i in range(model.neq):
-            kind, name = int(model.eq_type[i]), model.eq(i).name or f"equality {i}"
-            if kind in (int(mj.mjtEq.mjEQ_JOINT), int(mj.mjtEq.mjEQ_TENDON)) or not model.eq_active0[i]:
+    def loops(self, held: Held) -> tuple[Loop, ...]:
+        """Loops of connects and welds, but for the welds that hold free bodies."""
+        mj, model = self.source.mj, self.source.model
+        found: dict[tuple[str, str, int], list[Loop]] = {}
+        holding = {i for i, _, _ in held.values()}
+        for i, a, b in self._equalities("CONNECT", "WELD"):
+            A, p_a, R_a, B, p_b, R_b = self._ends(i, a, b)
+            (body_a, at_a), (body_b, at_b) = self.place[A], self.place[B]
+            ends = at_a + p_a, at_b + p_b
+            if i in holding:
                 continue
-            if kind != int(mj.mjtEq.mjEQ_CONNECT):
-                self.faults.append(f"equality '{name}' is no connect: loops close in a point, or on a hinge by two")
-                continue
-            a, b = int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
-            if model.eq_objtype[i] == int(mj.mjtObj.mjOBJ_SITE):
-                (body_a, p_a), (body_b, p_b) = self._point(a), self._point(b)
+            if max(model.body_mocapid[[A, B]]) >= 0:
+                self.source.note("equality", i, "what ties it to a mocap body, which a program moves, is left out")
+            elif int(model.eq_type[i]) == int(mj.mjtEq.mjEQ_WELD):
+                arms = [(ends[0] + HINGE_ARM * R_a[:, k], ends[1] + HINGE_ARM * R_b[:, k]) for k in (2, 0)]
+                for two in (ends, *arms):
+                    _connect(found.setdefault((body_a, body_b, i), []), body_a, body_b, *two)
             else:
-                (body_a, at_a), (body_b, at_b) = self.place[a], self.place[b]
-                p_a, p_b = vec3(at_a + model.eq_data[i, :3]), vec3(at_b + model.eq_data[i, 3:6])
-            ends[body_a, body_b].append((p_a, p_b))
-        loops = []
-        for (body_a, body_b), points in ends.items():
-            (p_a, p_b), *more = points
-            if len(more) > 1:
-                self.faults.append(f"'{body_a}' and '{body_b}' are connected in {len(points)} points: that is a weld")
-            elif more:
-                ((q_a, q_b),) = more
-                axes = vec3(np.subtract(q_a, p_a)), vec3(np.subtract(q_b, p_b))
-                loops.append(Loop(body_a, p_a, body_b, p_b, *axes))
-            else:
-                loops.append(Loop(body_a, p_a, body_b, p_b))
-        return tuple(loops)
+                _connect(found.setdefault((body_a, body_b, -1), []), body_a, body_b, *ends)
+        known = {int(getattr(mj.mjtEq, f"mjEQ_{kind}")) for kind in ("CONNECT", "WELD", "JOINT", "TENDON")}
+        for i in np.flatnonzero(model.eq_active0):
+            if int(model.eq_type[i]) not in known:
+                self.source.refuse("equality", int(i), "is no connect, weld, joint or tendon: it has no counterpart")
+        return tuple(loop for made in found.values() for loop in made)
 
     def springs(self) -> tuple[Element, ...]:
-        model = self.model
+        """Springs of hinges and of tendons; what is none that is known is refused."""
+        source, model = self.source, self.source.model
         names, springs = Names(), list[Element]()
+        if source.off("spring", "passive"):
+            return ()
         for j, name in self.joint_of.items():
-            if model.jnt_stiffness[j] and int(model.jnt_type[j]) == int(self.mj.mjtJoint.mjJNT_HINGE):
+            if model.jnt_stiffness[j] and int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE):
                 rest = float(model.qpos_spring[model.jnt_qposadr[j]])
-                springs.append(TorsionSpring(names.new(f"{name} spring"), ((name, 1.0),), model.jnt_stiffness[j], rest))
+                stiffness = float(model.jnt_stiffness[j])
+                springs.append(TorsionSpring(names.new(f"{name} spring"), ((name, 1.0),), stiffness, rest))
         for t in range(model.ntendon):
-            stiffness = float(model.tendon_stiffness[t])
-            if not stiffness:
-                continue
-            name = names.new(model.tendon(t).name or f"spring {t}")
-            first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
-            wraps = slice(first, first + count)
-            low, high = (float(x) for x in model.tendon_lengthspring[t])
-            along = [self.joint_of.get(int(j), "") for j in model.wrap_objid[wraps]]
-            if high - low > 1e-12 * max(high, 1.0):
-                self.faults.append(
-                    f"tendon '{name}' is slack from {low:g} to {high:g} m: give springlength one length twice, '0 0'"
-                )
-            elif (model.wrap_type[wraps] == int(self.mj.mjtWrap.mjWRAP_JOINT)).all():
-                hinges = (model.jnt_type[model.wrap_objid[wraps]] == int(self.mj.mjtJoint.mjJNT_HINGE)).all()
-                ratios = [float(ratio) for ratio in model.wrap_prm[wraps]]
-                if hinges:
-                    springs.append(TorsionSpring(name, tuple(zip(along, ratios, strict=True)), stiffness, low))
-                else:
-                    self.faults.append(f"tendon '{name}' is a spring along slides: only one along hinges is known")
-            elif count != 2 or (model.wrap_type[wraps] != int(self.mj.mjtWrap.mjWRAP_SITE)).any():
-                self.faults.append(
-                    f"tendon '{name}' does not run straight between two sites: that is no spring we know"
-                )
-            else:
-                (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in model.wrap_objid[wraps])
-                springs.append(Spring(name, body_a, p_a, body_b, p_b, stiffness, free_length=low))
+            if self._bent(t):
+                source.refuse("tendon", t, "is a spring that is curved or yields: only linear ones are known")
+            elif model.tendon_stiffness[t] and (found := self._spring(t)):
+                springs.append(replace(found, name=names.new(found.name)))
         return tuple(springs)
 
+    def _bent(self, t: int) -> bool:
+        bends = (getattr(self.source.model, array, None) for array in ("tendon_stiffnesspoly", "tendon_springyield"))
+        return any(values is not None and np.any(values[t]) for values in bends)  # an older engine has no such thing
 
-def vec3(v: Array) -> Vec3:
-    x, y, z = (float(c) for c in v)
-    return x, y, z
+    def _spring(self, t: int) -> Spring | TorsionSpring | None:
+        """The spring that a tendon is; None where that is refused, or holds nothing."""
+        source, model, wrap = self.source, self.source.model, self.source.mj.mjtWrap
+        name, stiffness = source.name("tendon", t) or f"spring {t}", float(model.tendon_stiffness[t])
+        first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
+        along, kinds = (array[first : first + count] for array in (model.wrap_objid, model.wrap_type))
+        low, high = (float(x) for x in model.tendon_lengthspring[t])
+        if high - low > 1e-12 * max(high, 1.0):
+            problem = f"is slack from {low:g} to {high:g}: a spring that only pulls is not known"
+            source.refuse("tendon", t, f"{problem}; springlength='{high:g} {high:g}' pushes below that length as well")
+        elif (kinds == int(wrap.mjWRAP_JOINT)).all():
+            ratios = zip(along.tolist(), model.wrap_prm[first : first + count].tolist(), strict=True)
+            terms = [(int(j), ratio) for j, ratio in ratios if ratio]
+            if all(int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE) for j, _ in terms):
+                joints = tuple((self.joint_of[j], ratio) for j, ratio in terms)
+                return TorsionSpring(name, joints, stiffness, low) if joints else None
+            source.refuse("tendon", t, "is a spring along slides: only one along hinges is known")
+        elif count != 2 or (kinds != int(wrap.mjWRAP_SITE)).any():
+            source.refuse("tendon", t, "is a spring that does not run straight between two sites: none such is known")
+        else:
+            (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in along)
+            return Spring(name, body_a, p_a, body_b, p_b, stiffness, free_length=low)
+        return None
+
+
+def _connect(made: list[Loop], body_a: str, body_b: str, p_a: Array, p_b: Array) -> None:
+    """Add a point where two bodies meet to their loops: the second makes the first a hinge, more are points again."""
+    if len(made) == 1 and made[0].axis_a is None:
+        axes = p_a - np.array(made[0].p_a), p_b - np.array(made[0].p_b)
+        if all(axis.any() for axis in axes):
+            made[0] = Loop(body_a, made[0].p_a, body_b, made[0].p_b, vec3(axes[0]), vec3(axes[1]))
+            return
+    made.append(Loop(body_a, vec3(p_a), body_b, vec3(p_b)))

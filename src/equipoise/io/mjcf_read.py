@@ -3,17 +3,19 @@
 What becomes what, where the two differ:
 
 - A body with several joints becomes a chain of massless bodies; a joint off its body's origin, a fixed joint more.
+- A free body becomes a chain of three slides and a ball where loops or springs hold it, fixed where a weld does.
 - A spatial tendon with a stiffness, between two sites, is a spring. A spring length that is not given is the tendon's
   length in the reference pose: the compiler says so. A slack range, wrapping and pulleys are refused.
 - A linear equality between joints, or of a fixed tendon held at a length, is a coupling; a joint held alone is locked.
-- A connect is a loop; two connects between the same bodies make a hinge loop, a third one is refused as a weld is.
+- A connect is a loop; two connects between the same bodies make a hinge loop. A weld is a hinge loop and a point more.
 - A hinge's stiffness, and a fixed tendon's along hinges, is a torsion spring.
 - A massless leaf of a body with nothing but a mass in one point is a point mass.
+- A capsule or sphere with a name is the space that its body takes.
+- Loops close as in the keyframe "assembled", else as in the reference pose or the first keyframe that closes them;
+  joints with an actuator steer them where that can be.
 
-- A capsule or sphere with a name is the space that its body takes. The keyframe "assembled" says how loops close.
-
-Other geometry, contacts, actuators, sensors and armature do not act on statics and are skipped. What acts and has no
-counterpart (free joints, springs of slides and balls, gravity compensation, curved equalities) is refused by name.
+Other geometry, contacts, sensors and armature do not act on statics, and what actuators do is what is asked for: they
+are skipped. What else acts is named, or refused by name: see `mjcf_acts`.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -23,30 +25,40 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import Any
+from typing import Literal
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, vec3
 from ..model.errors import Fault, InputError
-from ..model.mechanism import WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
-from ..model.rotation import about, ball_angles, from_quaternion, to_rpy
+from ..model.mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
+from ..model.rotation import about, from_quaternion, to_rpy
 from ..model.validate import MOST
-from . import mjcf
-from .mjcf_between import Between, Places, vec3
+from . import files, freed
+from .mjcf_acts import Model
+from .mjcf_between import Between, Places
 from .mjcf_compile import compiled
+from .mjcf_pose import assembly, independent, joint_values
+from .notes import Notes
 from .text import Names
+from .xmltree import lines
 
 MASSLESS = 1e-12  # [kg] what the compiler is told to put in the place of nothing
 NOTHING = 1e-11  # [kg m^2] likewise
 
 
-def read(path: str | os.PathLike[str]) -> Mechanism:
+def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
     """Read an MJCF file.
+
+    Args:
+        base: "fixed" holds every free body where it is drawn, "free" lets those be free that nothing holds.
 
     Raises:
         InputError: the engine is missing, does not compile the file (with its reason), or the file has something that
             acts on statics and cannot be expressed; everything of that kind is named at once.
+
+    Warns:
+        EquipoiseWarning: for each kind of thing that acts and is left out, and each flag that is heeded.
     """
     name = os.fspath(path)
     model = compiled(name)
@@ -54,20 +66,27 @@ def read(path: str | os.PathLike[str]) -> Mechanism:
 
     if model.nbody > MOST["bodies"]:
         raise InputError(Fault((), f"has {model.nbody - 1:,} bodies, at most {MOST['bodies']} are read", file=name))
-    reader = _Reader(mujoco, model)
+    notes = Notes(name)
+    reader = _Reader(Model(mujoco, model, notes, lines(files.read_text(name), name)), base)
     try:
         mechanism = reader.mechanism()
     except InputError as error:
-        raise InputError([fault.at(name) for fault in error.faults]) from None
-    if reader.faults:
-        raise InputError([Fault((), problem, file=name) for problem in reader.faults])
+        raise InputError([*notes.faults, *(fault.at(name) for fault in error.faults)]) from None
+    notes.close()
     return mechanism
 
 
+TYPES: dict[str, JointType | Literal["floating"]] = {
+    "mjJNT_HINGE": "revolute",
+    "mjJNT_SLIDE": "prismatic",
+    "mjJNT_BALL": "spherical",
+    "mjJNT_FREE": "floating",
+}
+
+
 class _Reader:
-    def __init__(self, mj: Any, model: Any) -> None:
-        self.mj, self.model = mj, model
-        self.faults: list[str] = []
+    def __init__(self, source: Model, base: str | None) -> None:
+        self.source, self.mj, self.model, self.base = source, source.mj, source.model, base
         self.bodies: list[Body] = []
         self.joints: list[Joint] = []
         self.masses: list[PointMass] = []
@@ -76,45 +95,42 @@ class _Reader:
         self.place: Places = {0: (WORLD, np.zeros(3))}
 
     def mechanism(self) -> Mechanism:
-        model = self.model
+        model, source = self.model, self.source
+        source.say()
         leaves = set(range(1, model.nbody)) - {int(parent) for parent in model.body_parentid[1:]}
+        between = Between(source, self.place, self.joint_of)
+        self.held = between.held()
         for b in range(1, model.nbody):
             self._body(b, b in leaves)
-        between = Between(self.mj, model, self.place, self.joint_of, self.faults)
         couplings, locked = between.couplings()
-        loops, springs = between.loops(), between.springs()
-        if self.faults:
-            return Mechanism("")
+        loops, springs = between.loops(self.held), between.springs()
         joints = tuple(replace(j, range=(locked[j.name],) * 2) if j.name in locked else j for j in self.joints)
+        if source.notes.faults:
+            return Mechanism("")
         found = Mechanism(
             model.names[: model.names.index(b"\0")].decode() or "mechanism", tuple(self.bodies), joints, couplings,
-            loops, springs, tuple(self.masses), vec3(model.opt.gravity), capsules=self._capsules(),
+            loops, springs, tuple(self.masses), (0.0, 0.0, 0.0) if source.off("gravity") else vec3(model.opt.gravity),
+            capsules=self._capsules(),
         )  # fmt: skip
-        return replace(found, independent=self._independent(), assembly=self._assembly(found)) if loops else found
+        for j, name in self.joint_of.items():
+            if self._type(j) == "floating" and self.base is None and not freed.held(found, name):
+                source.refuse("joint", j, freed.FREE)
+        if not loops:
+            return found
+        pose, J = assembly(source)
+        found = replace(found, assembly=self._values(found, pose))
+        return replace(found, independent=independent(source, found, self.joint_of, J))
 
-    def _independent(self) -> tuple[str, ...]:
-        model = self.model
-        for i in range(model.ntext):
-            if self.mj.mj_id2name(model, int(self.mj.mjtObj.mjOBJ_TEXT), i) == mjcf.INDEPENDENT:
-                first, size = int(model.text_adr[i]), int(model.text_size[i])
-                return tuple(model.text_data[first : first + size].rstrip(b"\0").decode().split("\n"))
-        return ()
-
-    def _assembly(self, found: Mechanism) -> tuple[tuple[str, float], ...]:
-        """The values of our coordinates in the keyframe."""
-        mj, model = self.mj, self.model
-        key = mj.mj_name2id(model, int(mj.mjtObj.mjOBJ_KEY), mjcf.ASSEMBLED)
-        if key < 0:
-            return ()
+    def _values(self, found: Mechanism, pose: Array) -> tuple[tuple[str, float], ...]:
+        """The values of our coordinates where the engine's are `pose` (nq,)."""
         values = {}
         for j, name in self.joint_of.items():
-            at = int(model.jnt_qposadr[j])
-            if int(model.jnt_type[j]) == int(mj.mjtJoint.mjJNT_BALL):
-                angles = ball_angles(from_quaternion(model.key_qpos[key, at : at + 4]))
-                values |= {f"{name}.{letter}": x for letter, x in zip("xyz", angles, strict=True)}
-            else:
-                values[name] = float(model.key_qpos[key, at])
+            at = int(self.model.jnt_qposadr[j])
+            values |= joint_values(self._type(j), name, pose[at : at + 7], self.model.qpos0[at : at + 7])
         return tuple((name, values[name]) for name in found.coordinates)
+
+    def _type(self, j: int) -> JointType | Literal["floating"]:
+        return TYPES[str(self.mj.mjtJoint(int(self.model.jnt_type[j])).name)]
 
     def _capsules(self) -> tuple[Capsule, ...]:
         mj, model, found = self.mj, self.model, []
@@ -132,11 +148,9 @@ class _Reader:
 
     def _body(self, b: int, leaf: bool) -> None:
         model = self.model
-        name = self._names.new(model.body(b).name or f"body {b}")
+        name = self._names.new(self.source.name("body", b) or f"body {b}")
         parent, origin = self.place[int(model.body_parentid[b])]
         position, R = origin + model.body_pos[b], from_quaternion(model.body_quat[b])
-        if model.body_gravcomp[b]:
-            self.faults.append(f"body '{name}' has gravity compensation: leave that to springs, or to a counterweight")
         mass, com = float(model.body_mass[b]), model.body_ipos[b]
         axes = from_quaternion(model.body_iquat[b])
         inertia = axes @ np.diag(model.body_inertia[b]) @ axes.T
@@ -169,31 +183,33 @@ class _Reader:
 
     def _joint(self, j: int, parent: str, child: str, shift: Array, turn: Array) -> Array:
         """Add a joint; gives the orientation that is left for the next one: none."""
-        mj, model = self.mj, self.model
-        name = self._joint_names.new(model.joint(j).name or f"joint {j}")
+        model = self.model
+        name = self._joint_names.new(self.source.name("joint", j) or f"joint {j}")
+        kind = self._type(j)
+        if kind == "floating" and (j in self.held or self.base == "fixed"):
+            _, R, p = self.held.get(j, (0, turn, shift))
+            self.joints.append(Joint(name, "fixed", parent, child, vec3(p), to_rpy(R)))
+            return np.eye(3)
         self.joint_of[j] = name
-        kind = int(model.jnt_type[j])
-        types: dict[int, JointType] = {
-            int(mj.mjtJoint.mjJNT_HINGE): "revolute",
-            int(mj.mjtJoint.mjJNT_SLIDE): "prismatic",
-            int(mj.mjtJoint.mjJNT_BALL): "spherical",
-        }
-        if kind not in types:
-            self.faults.append(f"joint '{name}' is free: a mechanism that is not held falls; weld it to the world")
-            return turn
-        if model.jnt_stiffness[j] and types[kind] != "revolute":
-            self.faults.append(f"joint '{name}' has a spring (stiffness): only that of a hinge is known, torsion")
-        axis, zero = model.jnt_axis[j], float(model.qpos0[model.jnt_qposadr[j]])
-        if types[kind] == "revolute" and zero:  # drawn at its reference angle, zero is elsewhere
+        first, dof = int(model.jnt_qposadr[j]), int(model.jnt_dofadr[j])
+        axis, zero = model.jnt_axis[j], float(model.qpos0[first])
+        if kind == "revolute" and zero:  # drawn at its reference angle, zero is elsewhere
             turn = turn @ about(axis, np.array([-zero]))[0]
-        if types[kind] == "prismatic" and zero:
+        if kind == "prismatic" and zero:
             shift = shift - turn @ axis * zero
-        limits = (float(model.jnt_range[j, 0]), float(model.jnt_range[j, 1])) if model.jnt_limited[j] else None
-        held = float(model.dof_damping[model.jnt_dofadr[j]]), float(model.dof_frictionloss[model.jnt_dofadr[j]])
-        found = Joint(name, types[kind], parent, child, vec3(shift), to_rpy(turn), damping=held[0], friction=held[1])
-        if types[kind] != "spherical":
-            found = replace(found, axis=vec3(axis), range=limits)
-        self.joints.append(found)
+        limited = model.jnt_limited[j] and kind in SINGLE and not self.source.off("limit", "constraint")
+        if model.jnt_limited[j] and kind not in SINGLE:
+            self.source.note("joint", j, "limits of a ball joint are left out")
+        limits = (float(model.jnt_range[j, 0]), float(model.jnt_range[j, 1])) if limited else None
+        resists = float(model.dof_damping[dof]), float(model.dof_frictionloss[dof])
+        made = Joint(name, "spherical" if kind == "floating" else kind, parent, child, vec3(shift), to_rpy(turn),
+                     range=limits, damping=resists[0], friction=resists[1])  # fmt: skip
+        if kind == "floating":
+            bodies, joints = freed.chain(kind, made, self._names)
+            self.bodies += bodies
+            self.joints += joints
+        else:
+            self.joints.append(replace(made, axis=vec3(axis)) if kind in SINGLE else made)
         return np.eye(3)
 
     def _used(self, b: int) -> bool:

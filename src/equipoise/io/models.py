@@ -8,14 +8,20 @@ from pathlib import Path
 
 from ..model.mechanism import Mechanism
 from .files import read_text
+from .urdf_known import CONVERTED
+
+__all__ = ["CONVERTED", "MODEL_SUFFIXES", "read"]
 
 URDF_SUFFIXES = (".urdf", ".xml")
 MJCF_SUFFIXES = (".mjcf", ".xml")
 MODEL_SUFFIXES = tuple(dict.fromkeys((*URDF_SUFFIXES, *MJCF_SUFFIXES)))
 
 
-def read(path: str | os.PathLike[str]) -> Mechanism:
+def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
     """Read a file whose suffix is one of `MODEL_SUFFIXES`; in a file .xml the root element says which kind it is.
+
+    Args:
+        base: see `io.load`.
 
     Raises:
         InputError: everything that is wrong with the file.
@@ -24,14 +30,14 @@ def read(path: str | os.PathLike[str]) -> Mechanism:
     if suffix in MJCF_SUFFIXES and (suffix not in URDF_SUFFIXES or _is_mjcf(path)):
         from . import mjcf_read
 
-        return mjcf_read.read(path)
+        return mjcf_read.read(path, base)
     from . import urdf
 
-    return urdf.read(Path(path))
+    return urdf.read(Path(path), base)
 
 
 def _is_mjcf(path: str | os.PathLike[str]) -> bool:
     """Whether the first element of an XML file is MJCF's: comments and declarations may come before it."""
     text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
     first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
-    return first is not None and first[1] == "mujoco"
+    return first is not None and first[1].startswith("mujoco")  # <mujocoinclude> is a part of one

@@ -14,13 +14,14 @@ MAX_ELEMENTS = 50_000  # the largest robot files have a few thousand
 
 @dataclass(frozen=True)
 class Element:
-    """An element and its place, both counted from 1. Text content is dropped: neither URDF nor MJCF uses it."""
+    """An element and its place, both counted from 1, with the text that stands in it."""
 
     tag: str
     attributes: dict[str, str]
     line: int
     column: int
     children: list[Element] = field(default_factory=list)
+    texts: list[str] = field(default_factory=list)
 
     def find(self, tag: str) -> Element | None:
         """The first child with this tag."""
@@ -86,12 +87,16 @@ class Document:
         def end(_tag: str) -> None:
             open_elements.pop()
 
+        def characters(found: str) -> None:
+            open_elements[-1].texts.append(found)
+
         def doctype(*_: object) -> None:
             # expat reports the declaration before it reads any entity inside it
             refuse("a document type declaration (<!DOCTYPE ...>) is not accepted: remove it")
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end
+        parser.CharacterDataHandler = characters
         parser.StartDoctypeDeclHandler = doctype
         try:
             parser.Parse(text, True)
@@ -99,3 +104,15 @@ class Document:
             fault = Fault((), f"not well-formed XML: {expat.errors.messages[error.code]}")
             raise InputError(self._at(fault, error.lineno, error.offset + 1)) from None
         return open_elements[0].children[0]
+
+
+def lines(text: str, file: str) -> dict[tuple[str, str], int]:
+    """Tag and name -> line of the first such element; a name that is not given is empty. Nothing of a faulty text."""
+    try:
+        root = Document(text, file).root
+    except InputError:
+        return {}
+    found: dict[tuple[str, str], int] = {}
+    for element in root.walk():
+        found.setdefault((element.tag, element.attributes.get("name", "")), element.line)
+    return found

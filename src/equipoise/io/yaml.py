@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 
+from ..model.elements import Vec3
 from ..model.errors import Fault, InputError, Path, nearest
 from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..model.units import quantity
@@ -22,8 +23,8 @@ __all__ = ["read", "to_text"]
 _SINGULAR = {"bodies": "body", "joints": "joint", "couplings": "coupling"}
 
 
-def read(path: str | os.PathLike[str]) -> Mechanism:
-    """Read a mechanism file.
+def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
+    """Read a mechanism file; `base` is for its model, see `load`.
 
     Raises:
         InputError: with a fault for everything that is wrong, each with its file, line and column.
@@ -35,7 +36,7 @@ def read(path: str | os.PathLike[str]) -> Mechanism:
         if isinstance(located.data, dict) and located.data.get("schema", SCHEMA) != SCHEMA:
             found = [(fault, on_key) for fault, on_key in found if fault.path == ("schema",)]  # the rest means nothing
         raise located.error(located.locate(fault, on_key) for fault, on_key in found)
-    return _mechanism(file, located)
+    return _mechanism(file, located, base)
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,11 @@ class _Tree:
     bodies: list[tuple[Body, _Origin]] = field(default_factory=list)
     joints: list[tuple[Joint, _Origin]] = field(default_factory=list)
     couplings: list[tuple[Coupling, _Origin]] = field(default_factory=list)
+    gravity: Vec3 | None = None  # of the model, where the file has none
 
 
-def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
-    tree, faults = _tree(file, located)
+def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mechanism:
+    tree, faults = _tree(file, located, base)
     assembly, more = _assembly(file, tree)
     faults += more
     try:
@@ -72,7 +74,7 @@ def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
             springs=tuple(item.element() for item in file.springs),
             masses=tuple(PointMass(**item.values()) for item in file.masses),
             capsules=tuple(Capsule(**item.values()) for item in file.capsules),
-            gravity=file.gravity,
+            gravity=tree.gravity or file.gravity,
             workspace=Workspace(**file.workspace.values()),
             provenance=file.provenance,
             independent=tuple(file.independent),
@@ -85,14 +87,15 @@ def _mechanism(file: MechanismFile, located: Located) -> Mechanism:
     return mechanism
 
 
-def _tree(file: MechanismFile, located: Located) -> tuple[_Tree, list[Fault]]:
+def _tree(file: MechanismFile, located: Located, base: str | None) -> tuple[_Tree, list[Fault]]:
     """The tree of the model, the dh table and the file itself, and the faults that do not hide others."""
     tree = _Tree()
     for key, other in (("joints", file.joints), ("model", file.model)):
         if file.dh is not None and other:
             raise located.error([Fault(("dh",), f"give either '{key}' or 'dh', not both")])
     if file.model is not None:
-        model = _model(file.model, located)
+        model = _model(file.model, located, base)
+        tree.gravity = None if "gravity" in file.model_fields_set else model.gravity
         origin = _Origin(("model",), "the model")
         tree.bodies += [(body, origin) for body in model.bodies]
         tree.joints += [(joint, origin) for joint in model.joints]
@@ -136,7 +139,7 @@ def _assembly(file: MechanismFile, tree: _Tree) -> tuple[dict[str, float], list[
     return values, faults
 
 
-def _model(name: str, located: Located) -> Mechanism:
+def _model(name: str, located: Located, base: str | None) -> Mechanism:
     """The mechanism of a model file; its name is relative to the folder of the mechanism file."""
     path = FilePath(located.file).parent / name
     suffix = path.suffix.lower()
@@ -147,7 +150,7 @@ def _model(name: str, located: Located) -> Mechanism:
         beside = sorted(p.name for p in path.parent.glob("*") if p.suffix.lower() in models.MODEL_SUFFIXES)
         raise located.error([Fault(("model",), f"there is no file {nearest(name, beside)}", tuple(beside[:12]))])
     try:
-        model = models.read(path)
+        model = models.read(path, base)
     except InputError as error:
         raise located.error([Fault(("model",), f"'{name}' cannot be used as a model"), *error.faults]) from error
     for key in ("loops", "springs", "masses"):

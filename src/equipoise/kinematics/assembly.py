@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,16 +11,14 @@ from ..model.arrays import Array
 from ..model.errors import Fault, InputError
 from .closure import Closure
 from .continuation import CLOSED, Split
+from .tree import Tree
 
 STARTS = 40  # random ones, when the guess does not lead to a closed pose
 STEPS = 200
 RANK = 1e-8  # singular values below this share of the largest, or of 1, are redundancy
 NEARBY = 1e-2  # [rad, or share of the size] how far the poses are that tell whether the assembly pose is singular
-STEERS = (
-    1e-2,
-    1e-4,
-    1e-6,
-)  # what a column must add to the dependent ones, as a share of its length; the first that does
+STEERS = (0.03, 1e-2, 1e-4, 1e-6)
+"""What a column must add to the dependent ones, as a share of its length: the first with which enough of them do."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +139,7 @@ def _rank(J: Array) -> int:
 
 
 def choose(closure: Closure, q: Array, freedom: int) -> Split:
-    """The independent coordinates: those of the file, else the first in its order that can be.
+    """The independent coordinates: those of the file, else the first in its order that can be, balls last.
 
     Raises:
         InputError: those of the file are too few, too many, or do not determine the others.
@@ -154,23 +153,27 @@ def choose(closure: Closure, q: Array, freedom: int) -> Split:
             raise InputError(Fault(("independent",), f"{needed} independent, found {len(given)}: {', '.join(given)}"))
         independent = sorted(names.index(name) for name in given)
         split = _split(independent, n)
-        free = _dependent(J[:, split.dependent], STEERS[-1])
+        free = _dependent(J[:, split.dependent], STEERS[-1], range(n - len(independent)))
         if len(free) < n - freedom:
             loose = next(names[j] for i, j in enumerate(split.dependent) if i not in free)
             message = f"{', '.join(given)} do not determine the others ('{loose}' stays free); try"
-            automatic = [names[j] for j in _automatic(J, n, freedom)]
+            automatic = [names[j] for j in _automatic(closure.tree, J, freedom)]
             raise InputError(Fault(("independent",), f"{message} {', '.join(automatic)}"))
         return split
-    return _split(_automatic(J, n, freedom), n)
+    return _split(_automatic(closure.tree, J, freedom), n)
 
 
-def _automatic(J: Array, n: int, freedom: int) -> list[int]:
+def _automatic(tree: Tree, J: Array, freedom: int) -> list[int]:
+    balls = {
+        f"{joint.name}.{letter}" for joint in tree.mechanism.joints if joint.type == "spherical" for letter in "xyz"
+    }
+    order = sorted(range(tree.n), key=lambda j: (tree.coordinates[j] not in balls, -j))
     dependent = []
     for share in STEERS:
-        dependent = _dependent(J, share)
-        if len(dependent) == n - freedom:
+        dependent = _dependent(J, share, order)
+        if len(dependent) == tree.n - freedom:
             break
-    return [j for j in range(n) if j not in dependent]
+    return [j for j in range(tree.n) if j not in dependent]
 
 
 def _split(independent: list[int], n: int) -> Split:
@@ -178,10 +181,10 @@ def _split(independent: list[int], n: int) -> Split:
     return Split(np.array(independent, int), np.array(dependent, int))
 
 
-def _dependent(J: Array, share: float) -> list[int]:
-    """Columns, from the last to the first, each of which adds a new direction to those before it."""
+def _dependent(J: Array, share: float, order: Iterable[int]) -> list[int]:
+    """Columns, in this order, each of which adds a new direction to those before it."""
     basis, found = np.zeros((len(J), 0)), []
-    for j in reversed(range(J.shape[1])):
+    for j in order:
         rest = J[:, j]
         for _ in range(2):  # once more for the rounding of the first
             rest = rest - basis @ (basis.T @ rest)

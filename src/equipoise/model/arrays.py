@@ -42,3 +42,9 @@ def _same(a: Any, b: Any) -> bool:
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return a.keys() == b.keys() and all(_same(value, b[key]) for key, value in a.items())
     return a is b or bool(np.all(a == b))
+
+
+def vec3(v: Array) -> tuple[float, float, float]:
+    """Three numbers as the frozen values of a mechanism hold them."""
+    x, y, z = (float(c) for c in v)
+    return x, y, z

@@ -19,6 +19,10 @@ class EquipoiseWarning(UserWarning):
     """Something in the input looks wrong but can be worked with."""
 
 
+class SlipWarning(EquipoiseWarning):
+    """Something in a valid mechanism looks like a slip: see `slips`."""
+
+
 class EquipoiseError(Exception):
     """Base class. `exit_code` is what the command line returns: 2 bad input, 1 the answer is "no"."""
 
@@ -124,11 +128,19 @@ def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
             return
 
 
+INSTEAD = {
+    "mass": "; where something lifts, as buoyancy does, give the mass less what is lifted",
+    "free_length": "; springs tightened beyond zero length are not known",
+}
+"""Of a field, what a negative value is meant to say, and how to say it."""
+
+
 def at_least(path: Path, value: float, low: float, unit: str) -> Iterator[Fault]:
     """A fault where a number is below `low`, beyond `LARGEST` or no number."""
     if not low <= value <= LARGEST:
         huge = isfinite(value) and value > LARGEST
-        yield Fault(path, _too_large(value, unit) if huge else f"must be at least {low:g} {unit}, found {value:g}")
+        least = f"must be at least {low:g} {unit}, found {value:g}{INSTEAD.get(str(path[-1]), '')}"
+        yield Fault(path, _too_large(value, unit) if huge else least)
 
 
 def positive(path: Path, value: float, unit: str) -> Iterator[Fault]:

@@ -1,0 +1,48 @@
+"""What the joints of a URDF become together: followers whose limits restrict nobody, and chains of simple joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..model.mechanism import WORLD, Body, Coupling, Joint
+from . import freed
+from .notes import Notes
+from .text import Names
+from .urdf_known import label
+from .xmltree import Element
+
+SLACK = 1e-6  # [rad or m] of limits that are written with few digits
+
+Links = list[tuple[Body, Element]]
+Joints = list[tuple[Joint, Element]]
+
+
+def unrestricted(joints: Joints, couplings: list[tuple[Coupling, Element]], notes: Notes) -> Joints:
+    """The joints, followers without limits of their own where these would restrict the leader."""
+    ranges, found = {joint.name: joint.range for joint, _ in joints}, {}
+    for coupling, element in couplings:
+        (leader, ratio), *_ = coupling.terms
+        own, leads = ranges.get(coupling.joint), ranges.get(leader)
+        ends = None if leads is None else sorted(ratio * end + coupling.offset for end in leads)
+        if own is not None and (ends is None or ends[0] < own[0] - SLACK or ends[1] > own[1] + SLACK):
+            found[coupling.joint] = None
+            message = "a follower's own limits, which would restrict its leader, are ignored as ROS does"
+            notes.note(label(element), message, (element.find("limit") or element).line)
+    return [(replace(joint, range=found.get(joint.name, joint.range)), element) for joint, element in joints]
+
+
+def chained(links: Links, joints: Joints) -> tuple[Links, Joints, list[tuple[str, Element]]]:
+    """Links and joints with chains in the place of floating and planar joints, and the names of those that float."""
+    names, floating = Names([WORLD, *(body.name for body, _ in links)]), []
+    more: Links = []
+    found: Joints = []
+    for joint, element in joints:
+        kind = element.attributes.get("type", "") if element.tag == "joint" else ""
+        if joint.type == "fixed" or kind not in freed.STEPS:
+            found.append((joint, element))
+            continue
+        bodies, steps = freed.chain(kind, joint, names)
+        more += [(body, element) for body in bodies]
+        found += [(step, element) for step in steps]
+        floating += [(joint.name, element)] if kind == "floating" else []
+    return [*links, *more], found, floating
