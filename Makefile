@@ -33,8 +33,8 @@ $(STAMP): pyproject.toml constraints.txt
 demo: $(STAMP) ## the main job on a real robot, start to finish
 	@$(BIN)/equipoise demo
 
-test: $(STAMP) ## the tests, but for slow ones, those in a browser and campaigns
-	$(PYTEST) -n 2 -m "not slow and not browser and not deep"
+test: $(STAMP) ## the tests, but for those that are marked slow
+	$(PYTEST) -n 2 -m "not slow"
 
 test-all: $(STAMP) ## all tests; those in a browser afterwards, one at a time
 	$(PYTEST) -n 2 -m "not browser"

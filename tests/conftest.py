@@ -27,6 +27,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+            item.add_marker(pytest.mark.slow(reason="needs a browser"))
+        if item.get_closest_marker("deep"):
+            item.add_marker(pytest.mark.slow(reason="a campaign"))
         for mark in item.iter_markers("slow"):
             if not mark.kwargs.get("reason"):
                 raise pytest.UsageError(f"{item.nodeid} does not say why: @pytest.mark.slow(reason=...)")

@@ -90,7 +90,7 @@ def test_brute_force_finds_some_and_misses_some() -> None:
     assert 2 <= np.isfinite(least).sum() <= SEEDS - 2
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="searches 2,000 springs")
 @pytest.mark.parametrize("seed", [0, 7])  # of 7, one set is only just impossible
 def test_two_thousand_springs(seed: int) -> None:
     found = choose(eq.check(lee_chen_springs()), made_up_catalogue(2000, seed), seconds=600)

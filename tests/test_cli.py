@@ -316,7 +316,7 @@ def test_methods_know_which_robots_are_deltas(run):
     assert "no loops" in rows["delta"]["reasons"][0]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="the whole DELTA method with its guide")
 def test_design_delta_full(run, tmp_path):
     out_file = tmp_path / "balanced.yaml"
     options = ("--set", "BF=120mm", "--set", "CS=100mm", "--set", "spring_7=1.8kg", "--set", "share_7=60%")
@@ -333,7 +333,7 @@ def test_design_delta_full(run, tmp_path):
     assert {spring.mass for spring in springs if spring.name.startswith("spring 7")} == {1.8}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="searches a workspace")
 def test_design_delta_optimum_prints_how_much_better_it_is(run):
     options = ("--set", "variant=optimum", "--set", "heights=0.5,800mm", "--set", "reach=5cm", "--set", "samples=200")
     code, out, _ = run("design", DELTA, "--method", "delta", *options, "--json")

@@ -53,7 +53,7 @@ def test_two_springs_leave_half_a_per_cent_of_the_gravity_energy():
     assert np.ptp(balance.total) <= 0.005 * np.ptp(balance.gravity)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="a front on a real robot")
 def test_panda_front():
     design = eq.design(robot("panda"), span=3, radius=0.15, springs=4, front=True, samples=1000)
     assert design.bound is not None

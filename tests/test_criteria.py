@@ -27,7 +27,7 @@ def test_what_a_criterion_excludes_has_a_proof_too(n, most):
     assert all(prove(layout, n) is not None for layout, _ in layouts)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="150 proofs for five links")
 def test_what_a_criterion_excludes_has_a_proof_too_for_five_links():
     layouts = failing(5, 4)
     chosen = np.random.default_rng(0).choice(len(layouts), 150, replace=False)

@@ -48,7 +48,7 @@ def test_random_mechanisms() -> None:
     assert min(met.values()) > 15, met
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="150 mechanisms of eight joints")
 def test_large_random_mechanisms() -> None:
     assert sum(agrees(random_mechanism(seed, 8, free_lengths=False), seed) for seed in range(1000, 1150)) > 100
 

@@ -79,7 +79,7 @@ def elsewhere() -> Iterator[str]:
     server.server_close()
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="needs a browser")
 def test_a_page_of_another_origin_gets_nothing_even_with_the_token(browser, viewer, elsewhere):
     import viser
 
@@ -105,20 +105,20 @@ def refused(browser: Any, address: str) -> None:
     assert set(contents) == {"0"}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="needs a browser")
 def test_another_name_for_this_machine_gets_nothing(browser, viewer):
     """The browser takes every name under localhost to this machine, as an attacker's name server would."""
     address = urlsplit(viewer.url)
     refused(browser, f"http://rebound.localhost:{address.port}{address.path}")
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="needs a browser")
 @pytest.mark.parametrize("path", ["/", "/index.html", "/wrong/"])
 def test_a_missing_token_gets_nothing(browser, viewer, path):
     refused(browser, f"http://{urlsplit(viewer.url).netloc}{path}")
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="needs a browser")
 def test_its_own_page_is_drawn_and_asks_nobody_else(browser, viewer, elsewhere):
     page = browser.new_page()
     against: list[str] = []

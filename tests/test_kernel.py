@@ -63,7 +63,7 @@ def test_random_mechanisms(seed: int, tier: str | None) -> None:
     assert disagreement(m, random_poses(m, 19, seed), tier) < ROUNDING
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="2,500 mechanisms are compiled")
 @pytest.mark.parametrize("block", range(10))
 def test_ten_thousand_random_mechanisms_and_poses(block: int) -> None:
     for seed in range(1000 * block, 1000 * (block + 1), 4):
@@ -251,7 +251,7 @@ def _in_a_new_process(cache: Path | str) -> str:
     return done.stdout.strip() or done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="compiles in new processes")
 def test_processes_may_compile_at_the_same_time(tmp_path: Path) -> None:
     with ThreadPoolExecutor(3) as pool:
         assert list(pool.map(_in_a_new_process, [tmp_path] * 3)) == ["9.81"] * 3
@@ -261,7 +261,7 @@ def test_processes_may_compile_at_the_same_time(tmp_path: Path) -> None:
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")} == kept  # loaded, not compiled
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="compiles in a new process")
 def test_nowhere_to_keep_it() -> None:
     assert _in_a_new_process("/proc/nowhere") == "9.81"
 

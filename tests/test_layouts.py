@@ -37,7 +37,13 @@ SMALLEST = {  # THEORY section 5, and one more for n = 5
         "13,15,16,24,26,34",
     },
 }
-LARGE = [2, 3, 4, pytest.param(5, marks=pytest.mark.slow), pytest.param(6, marks=pytest.mark.slow)]
+LARGE = [
+    2,
+    3,
+    4,
+    pytest.param(5, marks=pytest.mark.slow(reason="all layouts of five links")),
+    pytest.param(6, marks=pytest.mark.slow(reason="all layouts of six links")),
+]
 
 
 def names(found: Search) -> set[str]:
@@ -81,7 +87,7 @@ def test_smallest_span(n):
     judged(found)
 
 
-@pytest.mark.parametrize("n", [3, 4, 5, pytest.param(6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("n", [3, 4, 5, pytest.param(6, marks=pytest.mark.slow(reason="all layouts of six links"))])
 def test_several_springs_per_pair_span_more(n):
     """J1: what `search` leaves out for the span. Two between neighbours act as one, so they are never the fewest."""
     least = (n * n + n - 6) // 2

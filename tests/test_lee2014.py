@@ -21,7 +21,7 @@ def rows(paper):
     return {row.item: row for row in paper.rows}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="computes the whole paper")
 def test_every_number_is_compared_and_none_differs(paper, rows):
     assert len(rows) == len(paper.rows)
     for case in CASES:
@@ -34,7 +34,7 @@ def test_every_number_is_compared_and_none_differs(paper, rows):
     }
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="computes the whole paper")
 def test_numbers_of_the_paper(rows):
     """PAPERS.md: 20.52 to 20.63 J, mean 20.58, 0.055 N m; 27.17 to 27.29 J, 0.050 N m; 26 J from the wrong joint."""
     expected = {
@@ -53,7 +53,7 @@ def test_numbers_of_the_paper(rows):
         assert rows[item].computed == pytest.approx(value, abs=digits), item
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="computes the whole paper")
 def test_layouts(rows):
     for n, count in ((3, 1), (4, 3), (5, 4)):
         row = rows[f"layouts for n = {n}, Table 3 and Fig. 8"]
@@ -80,7 +80,7 @@ def test_the_motion_is_that_of_section_8():
     np.testing.assert_allclose(absolute[:, 2], 360 + 270, atol=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="computes the whole paper")
 def test_figure_10(paper):
     assert [figure.name for figure in paper.figures] == ["fig10a", "fig10b"]
     for figure, least in zip(paper.figures, (20.5, 27.2), strict=True):

@@ -105,7 +105,12 @@ def test_the_printed_a_hold_where_x_points_up():
 
 
 @pytest.mark.parametrize(
-    "file", ["lin2010_arm", "lin2010_balanced", pytest.param("lin2010_rssr", marks=pytest.mark.slow)]
+    "file",
+    [
+        "lin2010_arm",
+        "lin2010_balanced",
+        pytest.param("lin2010_rssr", marks=pytest.mark.slow(reason="closes RSSR loops")),
+    ],
 )
 def test_examples(file):
     mechanism = arm() if file == "lin2010_arm" else balanced(real=file == "lin2010_rssr").mechanism

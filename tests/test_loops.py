@@ -248,7 +248,9 @@ def volume(p: np.ndarray, t: np.ndarray) -> np.ndarray:
     return -np.linalg.det(np.stack(rods, axis=1))
 
 
-@pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "count", [2000, pytest.param(100_000, marks=pytest.mark.slow(reason="100,000 poses with loops"))]
+)
 def test_every_reachable_delta_pose_closes(count):
     tree = linkage("DELTA")
     places, angles = reachable(count, seed=1)

@@ -37,7 +37,9 @@ def outcome(path: Path) -> str:
 
 
 @pytest.mark.parametrize(
-    "seeds", [range(60), pytest.param(range(60, 400), marks=pytest.mark.slow)], ids=["few", "many"]
+    "seeds",
+    [range(60), pytest.param(range(60, 400), marks=pytest.mark.slow(reason="340 models in the engine"))],
+    ids=["few", "many"],
 )
 def test_torques_of_random_models_are_the_engines_or_something_is_said(seeds, tmp_path):
     found = Counter[str]()

@@ -109,7 +109,7 @@ def test_friction_damping_and_capsules_round_trip(tmp_path):
         )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="a hundred models in the engine")
 def test_random_mechanisms_round_trip(tmp_path):
     done, seed = 0, 500
     while done < 100:

@@ -50,7 +50,7 @@ def test_mass_centres_off_the_line_need_no_more_springs(n):
     assert len(found.mechanism.springs) == n - 1
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="searches springs of six links")
 def test_six_crooked_links():
     found = eq.design(crooked(6), "planar")
     assert found.balance.exact

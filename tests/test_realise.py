@@ -205,7 +205,7 @@ def test_springs_of_lee2014_table_5_can_be_made(table) -> None:
     assert all(s["realisations"][0]["fatigue_margin"] >= 1 - 1e-9 for s in enduring.to_dict()["springs"])
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="winds springs of every wire")
 def test_springs_of_lin2010_table_3() -> None:
     from equipoise.reproduce import lin2010
 

@@ -62,7 +62,7 @@ def test_a_spring_steps_aside_and_balances_as_before():
     assert clearance(found.mechanism, seed=7).least >= 0.005 - 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="a fit with clearance")
 def test_three_springs_of_an_arm_get_out_of_each_others_way():
     m = lee_chen_springs()
     found = ordinary(m.with_springs(replace(s, diameter=0.02) for s in m.springs), clearance=0.005)

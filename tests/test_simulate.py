@@ -103,7 +103,7 @@ def test_the_control_is_the_spring_that_is_felt_most():
     assert found.soft in {spring.name for spring in m.springs}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="ten seconds from twenty poses")
 @pytest.mark.parametrize("name", ["pendulum", "lenzo", "bevel", *LEE])
 def test_exact_designs_stay(name):
     """20 poses, 10 s: below 1e-6 rad, and the control moves by more than 1 degree from every pose."""
@@ -119,7 +119,7 @@ def test_exact_designs_stay(name):
     assert found.control.moved.max(axis=1).min() > DEGREE
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="ten seconds of six joints")
 def test_a_balanced_ur5_stays():
     found = release(ur5(), seconds=10, poses=10, tolerance=1e-4)
     assert found.stays
@@ -169,7 +169,7 @@ def held(m: eq.Mechanism, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]
     return found[0], found[1], error
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="loops in the engine")
 def test_the_arm_of_lin2010_with_its_ball_joints():
     m = lin2010.balanced(real=True).mechanism
     tree = Tree.of(m)
@@ -191,7 +191,7 @@ def test_the_arm_of_lin2010_with_its_ball_joints():
     assert ours.max() < 1e-9 * np.abs(without).max()
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="loops in the engine")
 def test_a_delta_robot_with_its_rod_pairs():
     m = delta()
     q = sample(Tree.of(m), 50, 3)
@@ -247,7 +247,7 @@ def test_a_motion_that_does_not_end_at_rest():
     np.testing.assert_allclose(play(m, t, (0.2 + 3.0 * t)[:, None]).torque, 0, atol=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="six seconds of motion in the engine")
 def test_the_motion_of_lin2010():
     """Eq. (26): the engine's energies are those of the paper's Fig. 9, and their sum is constant."""
     m = lin2010.balanced().mechanism

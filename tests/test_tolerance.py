@@ -232,7 +232,7 @@ def test_bad_options(run, tmp_path, arguments, message):
     assert message in err
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="a hundred thousand builds")
 def test_a_hundred_thousand_builds_of_a_robot():
     ur5 = eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
     found = tolerance(ur5, friction=5.0)
