@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from equipoise.synthesis.convex.method.polish import Parts
+from equipoise.synthesis.convex.polish import Parts
 
 import equipoise as eq
 from equipoise.energy import Potential
