@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from equipoise.synthesis.convex.polish import Parts
 
 import equipoise as eq
 from equipoise.energy import Potential
+from equipoise.synthesis.convex.polish import Parts
 from equipoise.synthesis.problem import Problem
 
 

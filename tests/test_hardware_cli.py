@@ -11,7 +11,7 @@ from robots import lee_chen, lee_chen_springs
 
 import equipoise as eq
 from equipoise.hardware import Envelope, Options
-from equipoise.hardware.realise import bill
+from equipoise.hardware.realise.bill import bill
 from equipoise.report.drawing import Drawing, save_drawing
 from equipoise.report.sheet import sheet
 from equipoise.report.style import clean

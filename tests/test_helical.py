@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.hardware import WIRES, CompressionSpring, ExtensionSpring, Limits
-from equipoise.hardware.sizing import wire
+from equipoise.hardware.sizing.wire import wire
 from equipoise.hardware.sizing.compression import least_free_length
 from equipoise.hardware.sizing.extension import LOOP
 from equipoise.hardware.sizing.helical import Helical, coils_for

@@ -13,7 +13,7 @@ from robots import TABLE_5A, TABLE_5B, lee_chen, lee_chen_springs
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
 from equipoise.hardware import Envelope, ExtensionSpring, Options, realisations
-from equipoise.hardware.realise import bill
+from equipoise.hardware.realise.bill import bill
 from equipoise.hardware.realise.installed import Torques, leaves
 from equipoise.hardware.realise.realisations import KINDS
 from equipoise.hardware.realise.stretch import Pulley, Straight, beyond

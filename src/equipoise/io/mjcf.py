@@ -134,7 +134,8 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
         attributes = {key: numbers(value) for key, value in values.items()}
         element = ET.SubElement(tendon, tag, name=spring.name, **attributes)
         for part, runs in along:
-            ET.SubElement(element, part, {key: v if isinstance(v, str) else numbers([v]) for key, v in runs.items()})
+            texts = {key: value if isinstance(value, str) else numbers([value]) for key, value in runs.items()}
+            ET.SubElement(element, part, texts)
     if mechanism.independent:
         ET.SubElement(ET.SubElement(root, "custom"), "text", name=INDEPENDENT, data="\n".join(mechanism.independent))
     _couplings(equality, tendon, mechanism)

@@ -163,7 +163,7 @@ class TorsionItem(Item):
         return value
 
     def element(self) -> Element:
-        joints = self.joints or {self.joint: 1.0}
+        joints = self.joints or {str(self.joint): 1.0}
         return TorsionSpring(self.name, tuple(joints.items()), self.stiffness, self.rest)
 
 
@@ -293,8 +293,9 @@ def _plain(detail: Any, data: Any) -> Fault:
 def _model(path: Path, data: Any) -> type[Item]:
     if not path:
         return MechanismFile
-    if path[0] == "springs" and len(path) > 1:
-        return _spring_model(data["springs"][path[1]])
+    section, *inside = path
+    if section == "springs" and inside:
+        return _spring_model(data["springs"][inside[0]])
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

@@ -16,6 +16,7 @@ from ..hardware.realise.realisations import FRICTION
 from ..hardware.sizing.extension import ExtensionSpring
 from ..hardware.sizing.wire import MM
 from ..hardware.stock.selection import Choice
+from ..model.elements import lines
 
 # what the spreadsheet holds of each chosen spring, in the order of its columns; all in SI units
 COLUMNS = (
@@ -129,8 +130,8 @@ def choice_lines(choice: Choice, before: Balance, after: Balance) -> Iterator[Re
     table.add_column("part")
     for title in ("rate [N/m]", "was", "Fmax [N]", "allowed", "A moved [mm]", "B moved [mm]", "mass [g]", "price"):
         table.add_column(title, justify="right", no_wrap=True)
-    old_springs = before.mechanism.springs
-    for old, new, stock, use in zip(old_springs, choice.mechanism.springs, choice.stock, after.use, strict=True):
+    both = (lines(mechanism, "stock") for mechanism in (before.mechanism, choice.mechanism))
+    for old, new, stock, use in zip(*both, choice.stock, after.use, strict=True):
         moved = [_distance(getattr(old, p), getattr(new, p)) for p in ("p_a", "p_b")]
         table.add_row(
             Text(new.name),

@@ -62,7 +62,7 @@ def balanced(arrangement: str = ARRANGEMENT) -> Design:
 def scaled(share: float) -> Mechanism:
     """The balanced shoulder with the stiffness of both springs times a share."""
     m = balanced().mechanism
-    return m.with_springs(replace(spring, stiffness=share * spring.stiffness) for spring in m.springs)
+    return m.with_springs(spring.scaled(share) for spring in m.springs)
 
 
 def reproduction() -> Reproduction:
@@ -87,7 +87,7 @@ def _differential() -> Iterator[Row]:
 
 
 def _stiffness() -> Iterator[Row]:
-    k = balanced().mechanism.springs[0].stiffness
+    k = balanced().mechanism.springs[0].strength[0]
 
     def of(m: float, l: float, b: float, h: float) -> float:  # noqa: E741  # the paper's letters
         return stiffness(m * G * l, b, h) / 1e3
@@ -105,7 +105,7 @@ def _stiffness() -> Iterator[Row]:
 
 
 def _energy() -> Iterator[Row]:
-    m, k = balanced().mechanism, balanced().mechanism.springs[0].stiffness
+    m, k = balanced().mechanism, balanced().mechanism.springs[0].strength[0]
     series, _ = fourier_form(replace(m, gravity=(0.0, 0.0, 0.0)))
     assert series is not None  # the ratios are whole
     constant = float(series.c[~series.varies].sum().real)
@@ -143,7 +143,7 @@ def _errors() -> Iterator[Row]:
     yield Row(PAPER, "peak residual over m g l, both springs 1 % soft", None, residual / _weight(),
               note="of either joint: it is (2 k b h - m g l) (s_1 c_2, c_1 s_2), (28)")  # fmt: skip
     yield Row(PAPER, "friction that holds every pose then", None, residual, "N m")
-    k = balanced().mechanism.springs[0].stiffness
+    k = balanced().mechanism.springs[0].strength[0]
     printed = float(check(scaled(1e3 * float(K) / k)).residual.max.max())
     yield Row(PAPER, "friction that holds every pose with the printed k", None, printed, "N m",
               note="if the printed m, l, b and h were exact")  # fmt: skip

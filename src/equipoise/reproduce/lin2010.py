@@ -21,6 +21,7 @@ from ..io.schema import DhRow, DhTable
 from ..kinematics import Tree
 from ..kinematics.motion import Move, follow
 from ..model.arrays import Array
+from ..model.elements import lines
 from ..model.mechanism import Body, Mechanism
 from ..synthesis import Design, design
 from ..synthesis.arms.moments import Lump, Moment, Segment, moments, segments
@@ -193,7 +194,7 @@ def _table_2() -> Iterator[Row]:
 
 def _table_3() -> Iterator[Row]:
     found = balanced().mechanism
-    springs = {spring.name: spring for spring in found.springs}
+    springs = {spring.name: spring for spring in lines(found, "the paper")}
     tree = Tree.of(found)
     start = tree.poses(motion()[:1])
     pose = (
@@ -250,7 +251,7 @@ def _energies() -> Iterator[Row]:
     found = balanced().mechanism
     without = found.with_springs(spring for spring in found.springs if spring.name != "link 3 spring")
     rounded = found.with_springs(
-        replace(spring, p_b=_point(row.b)) for spring, row in zip(found.springs, TABLE_3.values(), strict=True)
+        spring.changed(p_b=_point(row.b)) for spring, row in zip(found.springs, TABLE_3.values(), strict=True)
     )
     over = "variation of the total energy over all poses"
     yield Row(PAPER, f"{over}, without spring 3", None, _variation(without), "J", erratum=_SIGMA_3)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..balance import Balance, check
+from ..model.elements import Spring
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 
@@ -165,7 +166,10 @@ class Design(Shown):
 
     def with_diameter(self, diameter: float) -> Design:
         """The same design with springs of an outer diameter [m]."""
-        springs = (replace(spring, diameter=diameter) for spring in self.mechanism.springs)
+        springs = (
+            replace(spring, diameter=diameter) if isinstance(spring, Spring) else spring
+            for spring in self.mechanism.springs
+        )
         return replace(self, mechanism=self.mechanism.with_springs(springs))
 
     def with_provenance(self) -> Design:

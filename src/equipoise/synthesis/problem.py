@@ -15,6 +15,7 @@ import numpy as np
 
 from ..kinematics import Tree
 from ..model.arrays import Array
+from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
 from ..model.validate import MAX_SAMPLES, whole_number
@@ -222,7 +223,7 @@ class Problem:
         return np.where(counted, every * weights, 0.0)
 
 
-def _coordinates(mechanism: Mechanism, field: str, name: str) -> list[str]:
+def _coordinates(mechanism: Mechanism, field: str, name: str) -> list[Coordinate]:
     coordinates = Tree.of(mechanism).coordinates
     own = [c for c in coordinates if name in (c, c.rpartition(".")[0])]
     if not own:

@@ -103,7 +103,7 @@ class Model:
         Raises:
             InputError: a value is not possible; nothing changes.
         """
-        self._try([*self.springs[:number], replace(self.springs[number], **values), *self.springs[number + 1 :]])
+        self._try([*self.springs[:number], self.springs[number].changed(**values), *self.springs[number + 1 :]])
         self._edited = True
 
     def switch(self, number: int | None, on: bool) -> None:

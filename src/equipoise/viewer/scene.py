@@ -158,8 +158,11 @@ class Scene:
         on = iter(zip(self.model.mechanism.springs, self.model.state.path[0], strict=True))
         found = []
         for present in self.model.on:
-            spring, path = next(on) if present else (None, 0.0)
-            found.append(abs(float(spring.law.force(path))) / self.reach[spring.force_unit] if spring else 0.0)
+            if present:
+                spring, path = next(on)
+                found.append(abs(float(spring.law.force(path))) / self.reach[spring.force_unit])
+            else:
+                found.append(0.0)
         return found
 
     def _reach(self) -> dict[str, float]:

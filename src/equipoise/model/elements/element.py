@@ -7,8 +7,9 @@ symbols is handed to them, so that a kind is one file and everything else asks.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ..arrays import Array
 from ..errors import Fault
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 Vec3 = tuple[float, float, float]
 End = tuple[str, Vec3]  # a body's name and a point in its frame [m]
 Range = tuple[float, float]
+Tendon = tuple[str, Mapping[str, Iterable[float]], Sequence[tuple[str, Mapping[str, str | float]]]]
+"""Of MJCF: its tag, its numbers, and what it runs along (tag and attributes)."""
 
 
 Pull = Callable[["Value"], None]
@@ -113,8 +116,8 @@ class Element(ABC):
         """Its entry in ``check --json``, with the least and greatest path [m or rad] and force [N or N m]."""
 
     @abstractmethod
-    def mjcf(self) -> tuple[str, dict[str, Iterable[float]], list[tuple[str, dict[str, str | float]]]]:
-        """A tendon of MJCF: its tag, its numbers, and what it runs along (tag and attributes)."""
+    def mjcf(self) -> Tendon:
+        """It as a tendon of MJCF."""
 
     # pictures and words
 
@@ -150,6 +153,10 @@ class Element(ABC):
     @abstractmethod
     def sentence(self, path: Range, force: Range) -> str:
         """One line for a terminal: what it is, where, and how it is used."""
+
+    def changed(self, **values: Any) -> Self:
+        """The same with other values of its fields."""
+        return replace(self, **values)  # type: ignore[type-var]  # every kind is a dataclass
 
     @abstractmethod
     def scaled(self, factor: float) -> Element:

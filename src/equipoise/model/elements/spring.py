@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, NoFourierForm, UnsupportedError, at_least, finite, known, positive
-from .element import Element, End, Knob, Pens, Range, Vec3
+from .element import Element, End, Knob, Pens, Range, Tendon, Vec3
 from .law import Linear
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ class Spring(Element):
             "max_force": max(map(abs, force)),
         }
 
-    def mjcf(self) -> tuple[str, dict[str, Iterable[float]], list[tuple[str, dict[str, str | float]]]]:
+    def mjcf(self) -> Tendon:
         # one number would leave a slack range from 0 to it
         numbers = {"stiffness": [self.stiffness], "springlength": [self.free_length] * 2}
         return "spatial", numbers, [("site", {"site": f"{self.name}.{letter}"}) for letter in "ab"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, finite, known, positive
-from .element import Element, End, Knob, Pens, Range
+from .element import Element, End, Knob, Pens, Range, Tendon
 from .law import Linear
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class TorsionSpring(Element):
             "unit": self.force_unit,
         }
 
-    def mjcf(self) -> tuple[str, dict[str, Iterable[float]], list[tuple[str, dict[str, str | float]]]]:
+    def mjcf(self) -> Tendon:
         sign = -1.0 if self.rest == -1.0 else 1.0  # that number means "as in the model's zero pose" to the engine
         numbers = {"stiffness": [self.stiffness], "springlength": [sign * self.rest] * 2}
         return "fixed", numbers, [("joint", {"joint": joint, "coef": sign * ratio}) for joint, ratio in self.joints]

@@ -14,8 +14,7 @@ import numpy as np
 from ...balance import Balance
 from ...energy.fourier.energy import EXACT
 from ...hardware import Bill
-from ...hardware.realise import bill
-from ...hardware.realise.bill import way_dict
+from ...hardware.realise.bill import bill, way_dict
 from ...hardware.sizing.wire import MM
 from ...model.arrays import Array
 from ...model.coordinate import Coordinate
