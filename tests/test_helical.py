@@ -9,11 +9,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.hardware import WIRES, CompressionSpring, ExtensionSpring, Limits
-from equipoise.hardware.sizing.wire import wire
 from equipoise.hardware.sizing.compression import least_free_length
 from equipoise.hardware.sizing.extension import LOOP
 from equipoise.hardware.sizing.helical import Helical, coils_for
 from equipoise.hardware.sizing.limits import SOURCES
+from equipoise.hardware.sizing.wire import wire
 from equipoise.model.errors import InputError
 
 MM, MPA = 1e-3, 1e6

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import islice
+from math import isfinite
 from numbers import Integral
 from typing import TYPE_CHECKING
 from unicodedata import category
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 MAX_SAMPLES = 1_000_000
-FARTHEST = 1e9  # [rad or m] of a joint's range
-SHORTEST = 1e-9  # of an axis
 MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
 MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
 """What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
@@ -124,16 +123,15 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
             yield Fault(("joints", i, "type"), f"no joint type {nearest(joint.type, types)}", types)
             continue
         if joint.type in ("revolute", "prismatic"):
-            if max(map(abs, joint.axis)) < SHORTEST:
+            if not any(joint.axis):
                 yield Fault(("joints", i, "axis"), "must not be zero")
         elif joint.range is not None:
             yield Fault(("joints", i, "range"), f"a {joint.type} joint has no range; only revolute and prismatic have")
         if joint.range is not None and not (
-            all(abs(limit) <= FARTHEST for limit in joint.range) and joint.range[0] <= joint.range[1]
+            all(isfinite(limit) for limit in joint.range) and joint.range[0] <= joint.range[1]
         ):
             found = ", ".join(f"{limit:g}" for limit in joint.range)
-            expected = f"two numbers of at most {FARTHEST:g} in size, lower first"
-            yield Fault(("joints", i, "range"), f"must be {expected}, found [{found}]")
+            yield Fault(("joints", i, "range"), f"must be two finite numbers, lower first, found [{found}]")
         kind = Slide if joint.type == "prismatic" else Coordinate
         for key, value, per in (("damping", joint.damping, f" s/{kind.unit}"), ("friction", joint.friction, "")):
             yield from at_least(("joints", i, key), value, 0, kind.load_unit + per)
@@ -215,8 +213,9 @@ def _loops(m: Mechanism) -> Iterator[Fault]:
     for i, loop in enumerate(m.loops):
         axes = {"axis_a": loop.axis_a, "axis_b": loop.axis_b}
         for name, values in {"p_a": loop.p_a, "p_b": loop.p_b, **axes}.items():
-            yield from finite(("loops", i, name), values or ())
-            if name in axes and values is not None and max(map(abs, values)) < SHORTEST:
+            if not all(isfinite(value) for value in values or ()):
+                yield Fault(("loops", i, name), "must be finite")
+            elif name in axes and values is not None and not any(values):
                 yield Fault(("loops", i, name), "must not be zero")
         for name, other in (("axis_a", "axis_b"), ("axis_b", "axis_a")):
             if axes[name] is None and axes[other] is not None:
@@ -239,7 +238,8 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
             elif name in names[:i]:
                 yield Fault(path, f"coordinate '{name}' is named twice")
     for name, value in m.assembly:
-        yield from finite(("assembly", name), value)
+        if not isfinite(value):
+            yield Fault(("assembly", name), "must be finite")
 
 
 def _list(names: Iterable[str]) -> str:

@@ -44,8 +44,20 @@ class SpringPanel:
         for widget in (*self.widgets, *self._own()):
             widget.remove()
         self._forget()
+        springs, gui = self.model.springs, self.server.gui
         with self.folder:
-            self._widgets()
+            if not springs:
+                self.widgets = [gui.add_markdown("No springs yet: *Re-optimise* chooses three.")]
+                return
+            self.choice = gui.add_dropdown("spring", tuple(f"{i + 1}: {s.name}" for i, s in enumerate(springs)))
+            self.choice.on_update(lambda _: self._chosen())
+            self.here = gui.add_checkbox("this one is on", self.model.on[0])
+            self.here.on_update(lambda _: self._switched())
+        points = [x for spring in springs for _, p in spring.ends for x in p]
+        self.far = 1000.0 * max(FAR * self.scene.size, 2 * float(np.abs(points).max(initial=0.0)))
+        self.widgets = [self.choice, self.here]
+        self._numbers()
+        self._chosen()
 
     def _own(self) -> tuple[Any, ...]:
         """The widgets of the chosen spring's own numbers."""
@@ -57,21 +69,6 @@ class SpringPanel:
         self.points: list[Any] = []
         self.handles: list[Any] = []
         self.drag: Any = None
-
-    def _widgets(self) -> None:
-        springs, gui = self.model.springs, self.server.gui
-        if not springs:
-            self.widgets = [gui.add_markdown("No springs yet: *Re-optimise* chooses three.")]
-            return
-        names = tuple(f"{i + 1}: {spring.name}" for i, spring in enumerate(springs))
-        self.choice = gui.add_dropdown("spring", names)
-        self.choice.on_update(lambda _: self._chosen())
-        self.here = gui.add_checkbox("this one is on", self.model.on[0])
-        self.here.on_update(lambda _: self._switched())
-        points = [x for spring in springs for _, p in spring.ends for x in p]
-        self.far = 1000.0 * max(FAR * self.scene.size, 2 * float(np.abs(points).max(initial=0.0)))
-        self.widgets = [self.choice, self.here]
-        self._numbers()
 
     def _numbers(self) -> None:
         """The widgets of the chosen spring's own numbers, which are those of its kind."""
@@ -97,7 +94,6 @@ class SpringPanel:
             )
             handle.on_update(lambda event, j=j: self._dragged(j, event.target))
             self.handles.append(handle)
-        self._chosen()
 
     @property
     def number(self) -> int:
