@@ -55,7 +55,7 @@ def test_quantities_may_be_text():
         ("convex", {"spam": 2}, r"spam: method 'convex' has no such option \(valid: span, pairs"),
         ("convex", {"auxiliary": 2}, "auxiliary: method 'convex' has no such option"),
         ("planar", {"stiffness": {"13": "20 mm"}}, "stiffness.13: expected a number"),
-        ("pseudobase", {"auxiliary": "some"}, "auxiliary: expected a share such as 0.05 or 5%, found 'some'"),
+        ("pseudobase", {"auxiliary": "some"}, "auxiliary: expected a share such as 0.02 or 2%, found 'some'"),
         ("pseudobase", {"span": 2}, "span: method 'pseudobase' has no such option"),
         ("pseudobse", {}, "no method 'pseudobse'; did you mean 'pseudobase'"),
     ],

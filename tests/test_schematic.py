@@ -149,5 +149,5 @@ def test_loops_that_cannot_close_are_an_error(run, tmp_path, to):
     eq.save(open_bar, tmp_path / "broken.yaml")
     code, said, err = run("export", tmp_path / "broken.yaml", "--to", to, "-o", tmp_path / f"out.{to}")
     assert (code, said) == (2, "")
-    assert err.startswith("error: ")
+    assert "\nerror: " in f"\n{err}"
     assert [path.name for path in tmp_path.iterdir()] == ["broken.yaml"]

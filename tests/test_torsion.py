@@ -19,7 +19,7 @@ from equipoise.energy.kernel import Kernel
 from equipoise.io import mjcf
 from equipoise.io.yaml import to_text
 from equipoise.kinematics import Tree
-from equipoise.model.errors import InputError, NoFourierForm, UnsupportedError
+from equipoise.model.errors import EquipoiseWarning, InputError, NoFourierForm, UnsupportedError
 from equipoise.model.mechanism import JOINT_TYPES
 
 HINGE = """\
@@ -155,7 +155,7 @@ def test_files_keep_it(tmp_path: Path, hinge: Path) -> None:
     assert "joints: {shoulder: 2.0}" in to_text(m)
     peer("mujoco")
     model = tmp_path / "again.xml"
-    with pytest.warns(eq.errors.EquipoiseWarning, match="inertia"):
+    with pytest.warns(EquipoiseWarning, match="inertia"):
         model.write_text(mjcf.to_text(m))
     read, q = eq.load(model), np.linspace(-1, 1, 5)[:, None]
     assert [spring.name for spring in read.springs] == ["coil", "geared", "o"]

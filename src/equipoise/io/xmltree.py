@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 from ..model.errors import Fault, InputError
 
-MAX_ELEMENTS = 50_000  # the largest robot files have a few thousand
+MAX_ELEMENTS = 100_000  # the largest robot files have a few thousand
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,9 @@ class ImmutableMapping(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._items)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mapping) and self._items == ImmutableMapping(other)._items
+
     def __hash__(self) -> int:
         return hash(frozenset(self._items.items()))
 
