@@ -19,6 +19,7 @@ PROSE = {"summary", "source", "reasons", "parameters", "reason", "note", "settin
 EXTREMES = {"configuration"}
 PHYSICS = {"energy", "torque", "worst", "max_coefficient", "residual", "unbalanced"}  # all have one scale
 LEAST = 0.1  # [J, N m or N] of it: what hardware leaves of a balance may all be noise
+SHARES = ("share", "gap")  # the ends of names of shares of one
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 Path = tuple[str, ...]
@@ -67,7 +68,7 @@ def _keys(path: Path, a: Any, b: Any, found: Found) -> None:
 
 
 def _values(a: Any, b: Any, found: Found) -> None:
-    scales: dict[Path, float] = {("physics",): LEAST}
+    scales: dict[Path, float] = {("physics",): LEAST, ("shares",): 1.0}
     for path, value in _leaves((), a):
         if _is_number(value):
             scales[_family(path)] = max(scales.get(_family(path), 0.0), abs(value))
@@ -126,7 +127,9 @@ def _design(a: dict[str, Any], b: dict[str, Any], found: Found) -> None:
                     found.differences.append(f"{name}: {p} -> {q}")
             elif not abs(p - q) <= DESIGNED * abs(a["unbalanced"]):
                 where = f"front[{at - 1}].{name}" if at else name
-                found.differences.append(f"{where}: {p!r} -> {q!r}, {abs(p - q) / abs(a['unbalanced']):.2g}")
+                how = "better" if (q < p) == (name == "residual") else "worse"
+                off = abs(p - q) / abs(a["unbalanced"])
+                found.differences.append(f"{where}: {p!r} -> {q!r}, {how} by {off:.2g} of the unbalanced torque")
     details = Found()  # other springs may do as well
     _values(a, b, details)
     if details.differences and not found.differences:
@@ -157,6 +160,8 @@ def _matched(a: list[Any], b: list[Any]) -> tuple[list[Any], list[Any]]:
 
 
 def _family(path: Path) -> Path:
+    if path and path[-1].endswith(SHARES):
+        return ("shares",)
     return ("physics",) if PHYSICS & set(path) else path
 
 
