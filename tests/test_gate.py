@@ -194,7 +194,7 @@ def test_messages_that_mean_nothing_are_ignored_with_one_line(viewer, address, c
             found.send(raw)
         found.send("text")
         # the connection is still open, and a good message is still heard
-        stiffness = viewer.panel.springs.stiffness
+        stiffness = viewer.panel.springs.sliders[0]
         wanted = round(0.8 * stiffness.value / stiffness.step) * stiffness.step
         assert eq.io.yaml.to_text(viewer.model.saved()) == saved
         update = {"type": "GuiUpdateMessage", "uuid": control(viewer, stiffness.label), "updates": {"value": wanted}}
