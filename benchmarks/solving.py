@@ -18,7 +18,7 @@ from equipoise.hardware.stock.selection import choose
 from equipoise.model.errors import EquipoiseWarning
 from equipoise.robust import tolerance
 from equipoise.synthesis import Problem
-from equipoise.synthesis.convex.least_squares_form import Gram, build
+from equipoise.synthesis.convex.least_squares_form import LeastSquaresForm, build
 from equipoise.synthesis.convex.semidefinite import least_rms
 from equipoise.synthesis.convex.spring_block import smat
 
@@ -29,7 +29,7 @@ def line(what: str, first: float, second: float, names: tuple[str, str]) -> None
     print(f"{what}: {names[0]} {1e3 * first:.3g} ms, {names[1]} {1e3 * second:.3g} ms, ratio {second / first:.3g}")
 
 
-def by_cvxpy(gram: Gram) -> Callable[[], object]:
+def by_cvxpy(gram: LeastSquaresForm) -> Callable[[], object]:
     """The same program through a modelling language (its textbook form, same solver)."""
     import cvxpy as cp
 

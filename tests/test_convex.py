@@ -13,7 +13,7 @@ from equipoise.energy import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.synthesis import Problem, Region, by_name
-from equipoise.synthesis.convex.few_springs import FEASIBLE, Search
+from equipoise.synthesis.convex.few_springs import FEASIBLE, SpringSearch
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.semidefinite import least_rms
 
@@ -90,7 +90,7 @@ def test_fewest_springs_of_planar_arms_is_the_number_of_links():
     """THEORY section 3: a star on n vertices needs n - 1 springs; links without the ground are n - 1."""
     for links in (1, 2, 3):
         arm = planar_arm([1.0] * links, [0.3] * links, [0.15] * links)
-        search = Search(build(Problem.of(arm, span=links, radius=0.6)))
+        search = SpringSearch(build(Problem.of(arm, span=links, radius=0.6)))
         found = [search.best(count) for count in range(1, links + 1)]
         assert [f.exact for f in found] == [False] * (links - 1) + [True]
 
@@ -152,12 +152,12 @@ def test_peak_objective_lowers_the_peak():
 
 
 def test_bounds_of_small_sets_hold_for_the_designs_on_them():
-    search = Search(build(Problem.of(lee_chen(), span=2, radius=0.15)))
+    search = SpringSearch(build(Problem.of(lee_chen(), span=2, radius=0.15)))
     for count in (1, 2):
         found = search.best(count)
         assert found.bound is not None
         assert found.value >= found.bound - 1e-9
-        every = itertools.combinations(range(len(search.gram.blocks)), count)
+        every = itertools.combinations(range(len(search.reduced.blocks)), count)
         assert found.bound == pytest.approx(min(search.bound(pairs) for pairs in every))
 
 

@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.model.errors import InfeasibleError, UnsupportedError
 from equipoise.synthesis.planar.arm import Installation, PlanarArm
 from equipoise.synthesis.planar.equivalent import exchanged, resized, rotated, turned
-from equipoise.synthesis.planar.installing import Solution, solve
+from equipoise.synthesis.planar.installing import Installed, solve
 from equipoise.synthesis.planar.stiffness_blocks import StiffnessBlocks
 
 ARM = PlanarArm.of(lee_chen())
@@ -32,7 +32,7 @@ def same(one: tuple[Installation, ...], two: tuple[Installation, ...]) -> bool:
     return bool(abs(a - b).max() <= 1e-9 * abs(a).max())
 
 
-def solution(*layout: tuple[int, int]) -> Solution:
+def solution(*layout: tuple[int, int]) -> Installed:
     found = solve(ARM, layout)
     assert found is not None
     return found

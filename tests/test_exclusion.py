@@ -6,7 +6,7 @@ from itertools import combinations, combinations_with_replacement
 import pytest
 from planar_arms import pairs
 
-from equipoise.synthesis.planar.exclusion import Leaf, Proof, Split, prove, verify
+from equipoise.synthesis.planar.exclusion import CaseSplit, Leaf, Proof, prove, verify
 
 
 def within(n: int, span: int):
@@ -66,14 +66,14 @@ def test_a_proof_of_one_layout_is_none_of_another():
 def test_altered_proofs_are_refused():
     layout = ((1, 2), (1, 4), (2, 4))
     proof = prove(layout, 4)
-    assert isinstance(proof, (Leaf, Split))
+    assert isinstance(proof, (Leaf, CaseSplit))
     for leaf in leaves(proof)[:1]:
         number, weight = leaf.inequalities[0]
         for changed in (-weight, weight + 1):
             wrong = replace(leaf, inequalities=((number, changed), *leaf.inequalities[1:]))
             assert not verify(layout, 4, _with_first(proof, wrong))
     assert not verify(layout, 4, Leaf((), ()))
-    outside = Split(0, 1, float("inf"), proof, proof)  # no cut: both halves must lie inside
+    outside = CaseSplit(0, 1, float("inf"), proof, proof)  # no cut: both halves must lie inside
     assert not verify(layout, 4, outside)
 
 

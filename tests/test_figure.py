@@ -205,7 +205,7 @@ def test_of_many_coordinates_and_springs_the_first_are_shown(tmp_path):
     shown = texts(tmp_path / "many.svg").splitlines()
     assert "and 4 more springs" in shown
     rows = loads.shown(balance)[Coordinate]
-    assert len(rows) == loads.MOST
+    assert len(rows) == loads.BARS_SHOWN
     assert [i for i in range(14) if f"joint {i}" in shown] == rows.tolist()
     hidden = np.setdiff1d(np.arange(14), rows)
     assert balance.unbalanced.max[hidden].max() <= balance.unbalanced.max[rows].min()

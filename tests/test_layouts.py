@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.model.errors import InputError
 from equipoise.synthesis.planar.criteria import failures, sign_failures
 from equipoise.synthesis.planar.exclusion import prove, verify
-from equipoise.synthesis.planar.layouts import Search, _layouts, example_arm, name, search, span
+from equipoise.synthesis.planar.layouts import LayoutSearch, _layouts, example_arm, name, search, span
 
 FEWEST = {  # THEORY section 5; n = 5 as in the paper's Table 2
     2: {"12"},
@@ -46,11 +46,11 @@ LARGE = [
 ]
 
 
-def names(found: Search) -> set[str]:
+def names(found: LayoutSearch) -> set[str]:
     return {name(one.layout) for one in found.feasible}
 
 
-def judged(found: Search) -> None:
+def judged(found: LayoutSearch) -> None:
     """Nothing open, every proof good, every example exact with the springs of its layout."""
     assert not found.open
     assert all(verify(one.layout, found.n, one.proof) for one in found.proved if one.proof is not None)

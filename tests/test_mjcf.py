@@ -359,7 +359,7 @@ def test_any_name_is_written() -> None:
 
 
 def test_too_deep_a_chain_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("equipoise.model.validate.MOST", {})  # as if a mechanism might have so many
+    monkeypatch.setattr("equipoise.model.validate.LARGEST_COUNTS", {})  # as if a mechanism might have so many
     joints = tuple(Joint(f"j{i}", "revolute", f"b{i - 1}" if i else "world", f"b{i}") for i in range(2000))
     m = Mechanism("m", tuple(Body(f"b{i}", 1, inertia=TENSOR) for i in range(2000)), joints)
     with pytest.raises(UnsupportedError, match="more than 400 bodies"):

@@ -211,8 +211,8 @@ def test_bounds_with_mixed_blocks_hold_for_random_designs():
     problem = replace(
         problem, beside=(Counterweight("link3", 0.2), FixedSpring((0, 0, 0.5), "link2", (0.1, 0, 0), 0.3))
     )
-    gram, rng = build(problem), np.random.default_rng(0)
-    bound, q = least_rms(gram).value * gram.unbalanced, sample(Tree.of(ARM), 200)
+    reduced, rng = build(problem), np.random.default_rng(0)
+    bound, q = least_rms(reduced).value * reduced.unbalanced, sample(Tree.of(ARM), 200)
     for _ in range(50):
         mechanism = ARM
         for block in rng.permutation(np.array(problem.blocks, object)):

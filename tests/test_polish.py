@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from robots import lee_chen, planar_arm
 
-from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex import least_squares_form
 from equipoise.synthesis.convex.polish import Parts, best_amounts, jacobian, polish, residual
 from equipoise.synthesis.problem import Problem, Region
 
 
-def a_batch(compressed: gram.Gram, batch: int, springs: int, seed: int = 0) -> Parts:
+def a_batch(compressed: least_squares_form.LeastSquaresForm, batch: int, springs: int, seed: int = 0) -> Parts:
     rng = np.random.default_rng(seed)
     pair = rng.integers(len(compressed.blocks), size=(batch, springs))
     u = rng.uniform(-1, 1, (batch, springs, 6))
@@ -17,8 +17,8 @@ def a_batch(compressed: gram.Gram, batch: int, springs: int, seed: int = 0) -> P
 
 
 @pytest.fixture(scope="module")
-def compressed() -> gram.Gram:
-    return gram.build(Problem.of(lee_chen(), span=3, radius=0.15))
+def compressed() -> least_squares_form.LeastSquaresForm:
+    return least_squares_form.build(Problem.of(lee_chen(), span=3, radius=0.15))
 
 
 def test_jacobian_is_the_central_difference_to_second_order(compressed):
@@ -44,7 +44,7 @@ def test_jacobian_is_the_central_difference_to_second_order(compressed):
 
 @pytest.mark.parametrize("shape", ["ball", "box"])
 def test_polish_stays_in_the_regions_and_never_gets_worse(shape):
-    compressed = gram.build(Problem.of(lee_chen(), span=1, radius=0.1, shape=shape))
+    compressed = least_squares_form.build(Problem.of(lee_chen(), span=1, radius=0.1, shape=shape))
     start = best_amounts(compressed, a_batch(compressed, 40, 3))
     before = np.hypot(np.linalg.norm(residual(compressed, start), axis=1), compressed.rest)
     after, value = polish(compressed, start)
@@ -59,7 +59,7 @@ def test_polish_stays_in_the_regions_and_never_gets_worse(shape):
 def test_a_pendulum_is_polished_to_rounding():
     pendulum = planar_arm([2.0], [0.5], [0.3])
     regions = {"world": Region.ball(0.2), "link2": Region.box((0.2, 0.01, 0.01), (0.1, 0, 0))}
-    compressed = gram.build(Problem(pendulum, (("world", "link2"),), regions))
+    compressed = least_squares_form.build(Problem(pendulum, (("world", "link2"),), regions))
     start = best_amounts(compressed, a_batch(compressed, 16, 1))
     springs, value = polish(compressed, start)
     assert value.min() < 1e-12

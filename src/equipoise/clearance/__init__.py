@@ -1,7 +1,7 @@
 """How close springs come to links and to each other, and the poses in which a spring does not do its work."""
 
-from .constraint import Room
+from .constraint import ClearanceConstraint
 from .segments import closest
-from .verdict import Clearance, Gap, Line, clearance
+from .verdict import Clearance, Gap, SpringStates, clearance
 
-__all__ = ["Clearance", "Gap", "Line", "Room", "clearance", "closest"]
+__all__ = ["Clearance", "ClearanceConstraint", "Gap", "SpringStates", "clearance", "closest"]

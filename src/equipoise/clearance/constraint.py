@@ -15,7 +15,7 @@ THIN = 1e-3  # [m] least scale
 TOUCHING = 1e-12  # [m] less has no direction
 
 
-class Room:
+class ClearanceConstraint:
     """What is missing of `least` [m] at poses `q` (N, n), as a share of the spring's and the distance's own scale."""
 
     def __init__(self, mechanism: Mechanism, q: Array, least: float) -> None:

@@ -31,7 +31,7 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class Line:
+class SpringStates:
     """A spring's states: the share of poses in which it is `slack`, shorter than its free length, and, of each
     coordinate that it goes over centre about, the share in which it pulls the other, rarer way."""
 
@@ -45,7 +45,7 @@ class Clearance:
     """What is true of the room around springs; `gaps` smallest first. A spring may touch the links it is fixed to."""
 
     gaps: tuple[Gap, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[SpringStates, ...]
 
     @property
     def least(self) -> float:
@@ -79,7 +79,7 @@ def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0
     return Clearance(tuple(sorted(gaps, key=lambda gap: gap.distance)), tuple(_lines(mechanism, q)))
 
 
-def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
+def _lines(mechanism: Mechanism, q: Array) -> list[SpringStates]:
     """Of each spring: slack poses, and the coordinates about which its lever arm changes sign."""
     tree, found = Tree.of(mechanism), []
     poses = tree.poses(q)
@@ -92,5 +92,5 @@ def _lines(mechanism: Mechanism, q: Array) -> list[Line]:
             name: float(share) for name, share in zip(tree.coordinates, rarer, strict=True) if share > 0
         }
         slack = float((spring.path(tree, poses) < spring.free_length).mean())
-        found.append(Line(spring.name, slack, over))
+        found.append(SpringStates(spring.name, slack, over))
     return found

@@ -12,7 +12,7 @@ from . import terminal
 from .app import Json, app
 
 if TYPE_CHECKING:
-    from ..synthesis.planar.layouts import Search
+    from ..synthesis.planar.layouts import LayoutSearch
 
 FORMS = ("text", "latex")
 MANY = 5_000  # layouts: beyond it, the user is told beforehand
@@ -69,7 +69,7 @@ def layouts(
     raise typer.Exit(0 if found.feasible else 1)
 
 
-def _write(found: Search, folder: Path) -> list[Path]:
+def _write(found: LayoutSearch, folder: Path) -> list[Path]:
     """The example arm with each layout's springs."""
     from ..io import save
     from ..io.files import make_folder

@@ -14,10 +14,10 @@ from ..model.units import quantity, to_si
 
 if TYPE_CHECKING:
     from ..kinematics import Tree
-    from ..kinematics.motion import Move
+    from ..kinematics.motion import CubicMove
 
 FRAMES = 401  # of moves
-MOST = 50_000  # rows of a table
+LONGEST_TABLE = 50_000  # rows of a table
 
 Motion = tuple[Array, Array]
 """(T,) times [s] and (T, n) independent coordinates [rad or m]."""
@@ -59,8 +59,8 @@ def _placed(tree: Tree, moving: Sequence[str], q: Array) -> Array:
     return np.where([name in moving for name in tree.coordinates], q, tree.rest)
 
 
-def _move(text: str, tree: Tree) -> Move:
-    from ..kinematics.motion import USABLE, Move, unusable
+def _move(text: str, tree: Tree) -> CubicMove:
+    from ..kinematics.motion import USABLE, CubicMove, unusable
 
     parts = text.rsplit(":", 4)
     if len(parts) != 5:
@@ -75,7 +75,7 @@ def _move(text: str, tree: Tree) -> Move:
     first, last = (quantity(part, dimension, "--move") for part in parts[3:])
     if unusable(np.array([start, end]), np.array([first, last])) is not None:
         raise InputError(Fault(("--move",), f"found '{text}': {USABLE}"))
-    return Move(name, start, end, first, last)
+    return CubicMove(name, start, end, first, last)
 
 
 def _table(path: Path, tree: Tree) -> Motion:
@@ -85,7 +85,7 @@ def _table(path: Path, tree: Tree) -> Motion:
     def fault(line: int, message: str, choices: tuple[str, ...] = ()) -> InputError:
         return InputError(Fault((), message, choices, file=str(path), line=line))
 
-    (at, head), *body = csv_rows(path, MOST, ",")
+    (at, head), *body = csv_rows(path, LONGEST_TABLE, ",")
     columns = [heading(cell) for cell in head]
     names, factors = [name for name, _ in columns], []
     for name, unit in columns:

@@ -13,7 +13,7 @@ from ..kinematics.sampling import bounds, inside, slowest
 from ..kinematics.tree import Tree
 from ..model.arrays import Array
 
-ROUNDS = 24
+CLIMB_ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step
 BUDGET = 48_000  # poses the climb may evaluate in all
 LOOPED = 12_000  # the same where every pose has loops to close
@@ -37,8 +37,8 @@ def climb(tree: Tree, values: Callable[[Array], Array], q: Array, seed: int = 0)
         return best, best_q
     lower, upper = bounds(tree)
     width = np.minimum(upper - lower, 2.0 / slowest(tree))
-    tries = max(4, (LOOPED if tree.mechanism.loops else BUDGET) // (ROUNDS * m))
-    for i in range(ROUNDS):
+    tries = max(4, (LOOPED if tree.mechanism.loops else BUDGET) // (CLIMB_ROUNDS * m))
+    for i in range(CLIMB_ROUNDS):
         step = 0.25 * SHRINK**i * width * rng.normal(size=(m, tries, tree.n))
         step *= rng.random(step.shape) < max(0.5, 1 / tree.n)  # moving fewer coordinates at a time climbs ridges better
         trial = np.clip(best_q[:, None] + step, lower, upper).reshape(-1, tree.n)

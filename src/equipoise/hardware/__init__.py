@@ -8,12 +8,11 @@ from .sizing.limits import Limits
 from .sizing.winding import Envelope, Need, Winding
 from .sizing.wire import WIRES, Wire, wire
 from .stock.parts import Stock, read_catalogue, write_catalogue
-from .stock.selection import Choice, choose
+from .stock.selection import Selection, choose
 
 __all__ = [
     "WIRES",
     "Bill",
-    "Choice",
     "CompressionSpring",
     "Envelope",
     "ExtensionSpring",
@@ -21,6 +20,7 @@ __all__ = [
     "Need",
     "Options",
     "Realisation",
+    "Selection",
     "Stock",
     "Winding",
     "Wire",

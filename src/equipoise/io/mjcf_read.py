@@ -33,7 +33,7 @@ from ..model.arrays import Array, vec3
 from ..model.errors import Fault, InputError
 from ..model.mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
 from ..model.rotation import about, from_quaternion, to_rpy
-from ..model.validate import MOST
+from ..model.validate import LARGEST_COUNTS
 from . import files, freed
 from .mjcf_acts import Model
 from .mjcf_between import Between, Places
@@ -44,7 +44,7 @@ from .text import Names
 from .xmltree import lines
 
 MASSLESS = 1e-12  # [kg] what the compiler is told to put in the place of nothing
-NOTHING = 1e-11  # [kg m^2] likewise
+NO_INERTIA = 1e-11  # [kg m^2] likewise
 
 
 def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
@@ -64,8 +64,10 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
     model = compiled(name)
     import mujoco
 
-    if model.nbody > MOST["bodies"]:
-        raise InputError(Fault((), f"has {model.nbody - 1:,} bodies, at most {MOST['bodies']} are read", file=name))
+    if model.nbody > LARGEST_COUNTS["bodies"]:
+        raise InputError(
+            Fault((), f"has {model.nbody - 1:,} bodies, at most {LARGEST_COUNTS['bodies']} are read", file=name)
+        )
     notes = Notes(name)
     reader = _Reader(Model(mujoco, model, notes, lines(files.read_text(name), name)), base)
     try:
@@ -155,7 +157,7 @@ class _Reader:
         axes = from_quaternion(model.body_iquat[b])
         inertia = axes @ np.diag(model.body_inertia[b]) @ axes.T
         first, count = int(model.body_jntadr[b]), int(model.body_jntnum[b])
-        if leaf and not count and mass > MASSLESS and np.abs(inertia).max() <= NOTHING and not self._used(b):
+        if leaf and not count and mass > MASSLESS and np.abs(inertia).max() <= NO_INERTIA and not self._used(b):
             self.masses.append(PointMass(name, parent, mass, vec3(position + R @ com)))
             self.place[b] = parent, position
             return
@@ -174,7 +176,7 @@ class _Reader:
             held = self._joint_names.new(f"{name} weld")
             self.joints.append(Joint(held, "fixed", parent, name, vec3(shift + turn @ -at), to_rpy(turn)))
         self.place[b] = name, np.zeros(3)
-        i = inertia if np.abs(inertia).max() > NOTHING else np.zeros((3, 3))
+        i = inertia if np.abs(inertia).max() > NO_INERTIA else np.zeros((3, 3))
         mass = mass if mass > MASSLESS else 0.0
         full = (i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2])
         self.bodies.append(

@@ -7,7 +7,7 @@ from collections import defaultdict
 
 from ..model.errors import EquipoiseWarning, Fault, InputError
 
-MOST = 8  # names in one warning; the others are counted
+NAMES_SHOWN = 8  # names in one warning; the others are counted
 
 
 class Notes:
@@ -40,6 +40,6 @@ class Notes:
         if self.faults:
             raise InputError(self.faults)
         for message, names in self._found.items():
-            more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-            listed = ", ".join(names[:MOST])
+            more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
+            listed = ", ".join(names[:NAMES_SHOWN])
             warnings.warn(str(Fault((listed + more,), message, file=self.file)), EquipoiseWarning, stacklevel=4)

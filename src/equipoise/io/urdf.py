@@ -30,7 +30,7 @@ from .urdf_known import CONVERTED, label, refuse_xacro, short, unread
 from .urdf_loops import loops
 from .urdf_springs import springs
 from .urdf_write import MOMENTS, to_text, weld
-from .xmltree import Document, Element
+from .xmltree import Document, XmlElement
 
 __all__ = ["read", "read_text", "to_text"]
 
@@ -151,7 +151,7 @@ class _Reader:
     def _error(self) -> InputError:
         return InputError(sorted(self.faults, key=lambda fault: (fault.line or 0, fault.column or 0)))
 
-    def _welds(self, links: list[tuple[Body, Element]], joints: list[Joint]) -> list[tuple[Joint, Element]]:
+    def _welds(self, links: list[tuple[Body, XmlElement]], joints: list[Joint]) -> list[tuple[Joint, XmlElement]]:
         """A joint from the world to the root link, if that is not the world itself."""
         names = {body.name for body, _ in links}
         children = {joint.child for joint in joints}
@@ -165,7 +165,7 @@ class _Reader:
             )
         return [(weld(name), element) for name, element in roots if name != WORLD]
 
-    def _body(self, link: Element) -> Body:
+    def _body(self, link: XmlElement) -> Body:
         name = self._text(link, ("link",), "name")
         inertial = link.find("inertial")
         if inertial is None or name == WORLD:
@@ -186,7 +186,7 @@ class _Reader:
             (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = T.tolist()
         return Body(name, mass, xyz, (ixx, iyy, izz, ixy, ixz, iyz))
 
-    def _joint(self, joint: Element) -> Joint:
+    def _joint(self, joint: XmlElement) -> Joint:
         name = self._text(joint, ("joint",), "name")
         path = (label(joint),)
         ends = []
@@ -211,7 +211,7 @@ class _Reader:
         damping, friction = (self._number(dynamics, (*path, "dynamics"), key, 0.0) for key in ("damping", "friction"))
         return replace(found, damping=damping, friction=friction)
 
-    def _type(self, joint: Element, path: Path) -> str:
+    def _type(self, joint: XmlElement, path: Path) -> str:
         kind = joint.attributes.get("type")
         if kind in TYPES:
             return kind
@@ -219,7 +219,7 @@ class _Reader:
         self._fault(joint, (*path, "type"), message, tuple(TYPES))
         return "continuous"
 
-    def _limits(self, joint: Element, path: Path, kind: str) -> tuple[float, float] | None:
+    def _limits(self, joint: XmlElement, path: Path, kind: str) -> tuple[float, float] | None:
         limit = joint.find("limit")
         if limit is None or not {"lower", "upper"} & limit.attributes.keys():
             self.notes.note(str(path[0]), f"its limits are missing: {UNLIMITED[kind]}", (limit or joint).line)
@@ -232,7 +232,7 @@ class _Reader:
             return None
         return (lower, upper) if len(self.faults) == before else None
 
-    def _couplings(self, joints: list[Joint], root: Element) -> list[tuple[Coupling, Element]]:
+    def _couplings(self, joints: list[Joint], root: XmlElement) -> list[tuple[Coupling, XmlElement]]:
         types, found = {joint.name: joint.type for joint in joints}, []
         for joint, element in zip(joints, root.find_all("joint"), strict=True):
             if (mimic := element.find("mimic")) is None:
@@ -249,28 +249,28 @@ class _Reader:
                 found.append((Coupling(joint.name, ((leader, ratio),), offset), element))
         return found
 
-    def _origin(self, element: Element, path: Path) -> tuple[Vec3, Vec3]:
+    def _origin(self, element: XmlElement, path: Path) -> tuple[Vec3, Vec3]:
         origin, zero = element.find("origin"), (0.0, 0.0, 0.0)
         if origin is None:
             return zero, zero
         path = (*path, "origin")
         return self._vector(origin, path, "xyz", zero), self._vector(origin, path, "rpy", zero)
 
-    def _child(self, inertial: Element, path: Path, tag: str, key: str, missing: str) -> float:
+    def _child(self, inertial: XmlElement, path: Path, tag: str, key: str, missing: str) -> float:
         child = inertial.find(tag)
         if child is not None and key in child.attributes:
             return self._number(child, (*path, tag), key)
         self.notes.note(str(path[0]), missing, (child or inertial).line)
         return 0.0
 
-    def _text(self, element: Element, path: Path, key: str) -> str:
+    def _text(self, element: XmlElement, path: Path, key: str) -> str:
         value = element.attributes.get(key, "")
         if not value:
             self._fault(element, (*path, key), "missing")
             self.broken = True
         return value
 
-    def _number(self, element: Element, path: Path, key: str, default: float | None = None) -> float:
+    def _number(self, element: XmlElement, path: Path, key: str, default: float | None = None) -> float:
         text = element.attributes.get(key)
         if text is None:
             if default is None:
@@ -278,12 +278,12 @@ class _Reader:
             return default or 0.0
         return (self._floats(element, (*path, key), text, 1) or [0.0])[0]
 
-    def _vector(self, element: Element, path: Path, key: str, default: Vec3) -> Vec3:
+    def _vector(self, element: XmlElement, path: Path, key: str, default: Vec3) -> Vec3:
         text = element.attributes.get(key)
         values = None if text is None else self._floats(element, (*path, key), text, 3)
         return default if values is None else (values[0], values[1], values[2])
 
-    def _floats(self, element: Element, path: Path, text: str, count: int) -> list[float] | None:
+    def _floats(self, element: XmlElement, path: Path, text: str, count: int) -> list[float] | None:
         words = text.split()
         if len(words) == count and all(_NUMBER.fullmatch(word) for word in words):
             values = [float(word) for word in words]
@@ -293,5 +293,5 @@ class _Reader:
         self._fault(element, path, f"expected {expected}, found '{short(text)}'")
         return None
 
-    def _fault(self, element: Element, path: Path, message: str, choices: tuple[str, ...] = ()) -> None:
+    def _fault(self, element: XmlElement, path: Path, message: str, choices: tuple[str, ...] = ()) -> None:
         self.faults.append(self.document.place(Fault(path, message, choices), element))

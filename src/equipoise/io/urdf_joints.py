@@ -9,15 +9,15 @@ from . import freed
 from .notes import Notes
 from .text import Names
 from .urdf_known import label
-from .xmltree import Element
+from .xmltree import XmlElement
 
 SLACK = 1e-6  # [rad or m] of limits that are written with few digits
 
-Links = list[tuple[Body, Element]]
-Joints = list[tuple[Joint, Element]]
+Links = list[tuple[Body, XmlElement]]
+Joints = list[tuple[Joint, XmlElement]]
 
 
-def unrestricted(joints: Joints, couplings: list[tuple[Coupling, Element]], notes: Notes) -> Joints:
+def unrestricted(joints: Joints, couplings: list[tuple[Coupling, XmlElement]], notes: Notes) -> Joints:
     """The joints, followers without limits of their own where these would restrict the leader."""
     ranges, found = {joint.name: joint.range for joint, _ in joints}, {}
     for coupling, element in couplings:
@@ -31,7 +31,7 @@ def unrestricted(joints: Joints, couplings: list[tuple[Coupling, Element]], note
     return [(replace(joint, range=found.get(joint.name, joint.range)), element) for joint, element in joints]
 
 
-def chained(links: Links, joints: Joints) -> tuple[Links, Joints, list[tuple[str, Element]]]:
+def chained(links: Links, joints: Joints) -> tuple[Links, Joints, list[tuple[str, XmlElement]]]:
     """Links and joints with chains in the place of floating and planar joints, and the names of those that float."""
     names, floating = Names([WORLD, *(body.name for body, _ in links)]), []
     more: Links = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..model.errors import Fault, InputError
 from .notes import Notes
-from .xmltree import Document, Element
+from .xmltree import Document, XmlElement
 
 CONVERTED = {
     ".xacro": "it has macros in it; expand them first: xacro FILE > robot.urdf",
@@ -33,7 +33,7 @@ GAZEBO = {
     "joint": ("never", "a simulator's joint is left out: write it as <loop_joint>, or as a loop of a mechanism file"),
 }
 """What acts among a simulator's settings: the value with which it does not, and what is said of any other."""
-SAME = {"1": "true", "0": "false"}
+BOOLEANS = {"1": "true", "0": "false"}
 
 
 def unread(document: Document, notes: Notes) -> None:
@@ -52,16 +52,16 @@ def unread(document: Document, notes: Notes) -> None:
             notes.note(f"{key} of <{element.tag}>", "it is unknown, and not read", element.line)
 
 
-def _settings(gazebo: Element, notes: Notes) -> None:
+def _settings(gazebo: XmlElement, notes: Notes) -> None:
     for element in gazebo.children:
         idle, message = GAZEBO.get(element.tag, ("", ""))
         text = words(element).lower()
-        if message and SAME.get(text, text) != idle:
+        if message and BOOLEANS.get(text, text) != idle:
             name = gazebo.attributes.get("reference") or element.attributes.get("name", "")
             notes.note(f"<{element.tag}> of '{name}'", message, element.line)
 
 
-def words(element: Element) -> str:
+def words(element: XmlElement) -> str:
     """What stands in an element, or is its value."""
     return "".join(element.texts).strip() or element.attributes.get("value", "")
 
@@ -83,12 +83,12 @@ def refuse_xacro(document: Document) -> None:
             _xacro(document, element, f"<{element.tag}>")
 
 
-def _xacro(document: Document, element: Element, found: str) -> None:
+def _xacro(document: Document, element: XmlElement, found: str) -> None:
     fault = Fault((), f"found {found}: this is a xacro file; expand it with xacro first (xacro FILE > robot.urdf)")
     raise InputError(document.place(fault, element))
 
 
-def label(element: Element) -> str:
+def label(element: XmlElement) -> str:
     """An element as a message names it."""
     name = element.attributes.get("name")
     return f"{element.tag} '{name}'" if name is not None else f"<{element.tag}>"

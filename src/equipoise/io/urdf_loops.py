@@ -15,16 +15,16 @@ from ..model.mechanism import Loop
 from ..model.rotation import from_rpy
 from .notes import Notes
 from .urdf_known import label
-from .xmltree import Element
+from .xmltree import XmlElement
 
 TYPES = ("spherical", "revolute", "continuous", "fixed")
 ARM = 0.1
 """From the hinge to the point that makes a fixed loop of it [m]."""
 
 
-def loops(root: Element, notes: Notes) -> list[tuple[Loop, Element]]:
+def loops(root: XmlElement, notes: Notes) -> list[tuple[Loop, XmlElement]]:
     """The loops of a robot, each with its element; what is wrong is refused in `notes`."""
-    found: list[tuple[Loop, Element]] = []
+    found: list[tuple[Loop, XmlElement]] = []
     for element in root.find_all("loop_joint"):
         kind, before = element.attributes.get("type", "spherical"), len(notes.faults)
         ends = [_end(element, tag, notes) for tag in ("link1", "link2")]
@@ -47,7 +47,7 @@ def loops(root: Element, notes: Notes) -> list[tuple[Loop, Element]]:
     return found
 
 
-def _end(element: Element, tag: str, notes: Notes) -> tuple[str, Array, Array]:
+def _end(element: XmlElement, tag: str, notes: Notes) -> tuple[str, Array, Array]:
     end = element.find(tag)
     if end is None or not end.attributes.get("link"):
         notes.refuse(label(element), f"needs <{tag} link='...'/>", element.line)
@@ -56,7 +56,9 @@ def _end(element: Element, tag: str, notes: Notes) -> tuple[str, Array, Array]:
     return end.attributes["link"], xyz, from_rpy(rpy)
 
 
-def _vector(at: Element | None, key: str, default: tuple[float, float, float], element: Element, notes: Notes) -> Array:
+def _vector(
+    at: XmlElement | None, key: str, default: tuple[float, float, float], element: XmlElement, notes: Notes
+) -> Array:
     words = (at.attributes.get(key) if at is not None else None) or " ".join(map(str, default))
     try:
         found = np.array([float(word) for word in words.split()])

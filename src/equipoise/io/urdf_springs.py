@@ -6,12 +6,12 @@ from ..model.elements import TorsionSpring
 from ..model.mechanism import Joint
 from .notes import Notes
 from .urdf_known import words
-from .xmltree import Element
+from .xmltree import XmlElement
 
 STIFFNESS, REFERENCE = ("springStiffness", "spring_stiffness"), ("springReference", "spring_reference")
 
 
-def springs(root: Element, joints: list[Joint], notes: Notes) -> tuple[TorsionSpring, ...]:
+def springs(root: XmlElement, joints: list[Joint], notes: Notes) -> tuple[TorsionSpring, ...]:
     """Torsion springs of revolute joints; that of another joint is left out, with a word."""
     types, found = {joint.name: joint.type for joint in joints}, {}
     for settings in root.find_all("gazebo"):

@@ -13,27 +13,27 @@ MAX_ELEMENTS = 100_000  # the largest robot files have a few thousand
 
 
 @dataclass(frozen=True)
-class Element:
+class XmlElement:
     """An element and its place, both counted from 1, with the text that stands in it."""
 
     tag: str
     attributes: dict[str, str]
     line: int
     column: int
-    children: list[Element] = field(default_factory=list)
+    children: list[XmlElement] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)
 
-    def find(self, tag: str) -> Element | None:
+    def find(self, tag: str) -> XmlElement | None:
         """The first child with this tag."""
         return next(self.find_all(tag), None)
 
-    def find_all(self, tag: str) -> Iterator[Element]:
+    def find_all(self, tag: str) -> Iterator[XmlElement]:
         """The children with this tag."""
         return (child for child in self.children if child.tag == tag)
 
-    def walk(self) -> Iterator[Element]:
+    def walk(self) -> Iterator[XmlElement]:
         """This element and everything below it, without recursion: a hostile file can nest without limit."""
-        waiting: list[Element] = [self]
+        waiting: list[XmlElement] = [self]
         while waiting:
             element = waiting.pop()
             yield element
@@ -57,7 +57,7 @@ class Document:
         self._lines = re.split(r"\r\n|\r|\n", text)  # what expat counts as lines; splitlines() counts more
         self.root = self._parse(text)
 
-    def place(self, fault: Fault, element: Element) -> Fault:
+    def place(self, fault: Fault, element: XmlElement) -> Fault:
         """The fault, at the place of an element."""
         return self._at(fault, element.line, element.column)
 
@@ -65,10 +65,10 @@ class Document:
         source = self._lines[line - 1] if line <= len(self._lines) else ""
         return fault.at(self.file, line, column, source if len(source) <= 160 else source[:157] + "...")
 
-    def _parse(self, text: str) -> Element:
+    def _parse(self, text: str) -> XmlElement:
         parser = expat.ParserCreate()
         parser.buffer_text = True
-        open_elements = [Element("", {}, 0, 0)]
+        open_elements = [XmlElement("", {}, 0, 0)]
         count = 0
 
         def refuse(message: str) -> None:
@@ -80,7 +80,7 @@ class Document:
             count += 1
             if count > MAX_ELEMENTS:
                 refuse(f"has more than {MAX_ELEMENTS:,} elements")
-            element = Element(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+            element = XmlElement(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
             open_elements[-1].children.append(element)
             open_elements.append(element)
 

@@ -30,7 +30,7 @@ _WORDS |= dict.fromkeys(("true", "True", "TRUE"), True)
 _WORDS |= dict.fromkeys(("false", "False", "FALSE"), False)
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")  # what the parser counts as a line
 
-Place = tuple[int, int]  # line and column, from 1
+Position = tuple[int, int]  # line and column, from 1
 
 
 @dataclass
@@ -40,8 +40,8 @@ class Located:
     file: str
     lines: list[str]
     data: Any = None
-    values: dict[Path, Place] = field(default_factory=dict)
-    keys: dict[Path, Place] = field(default_factory=dict)
+    values: dict[Path, Position] = field(default_factory=dict)
+    keys: dict[Path, Position] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
 
     def locate(self, fault: Fault, on_key: bool = False) -> Fault:
@@ -133,7 +133,7 @@ class _Builder:
         self.documents = 0
         self.stop = False
         self._taken = 0
-        self.place: Place = (1, 1)  # of the last event
+        self.place: Position = (1, 1)  # of the last event
         self._stack: list[_Frame] = []
 
     def take(self, event: Any) -> None:
@@ -221,7 +221,7 @@ class _Builder:
         return self.located.at(fault, *_place(event))
 
 
-def _place(event: Any) -> Place:
+def _place(event: Any) -> Position:
     return event.start_mark.line + 1, event.start_mark.column + 1
 
 

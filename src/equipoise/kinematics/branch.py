@@ -21,7 +21,7 @@ from .tree import Tree
 
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
 WAYPOINTS = 512  # goals of a round
-ROUNDS = 4  # each in the box of what the last has reached
+FLOODS = 4  # each in the box of what the last has reached
 MARGIN = 0.25  # of that box, on every side
 ENOUGH = 0.5  # of the goals: no more rounds
 ATTEMPTS = 3  # nearest waypoints that a pose is tried from
@@ -185,7 +185,7 @@ class Branch:
         rng = np.random.default_rng(0)
         reached = self._with(None, self.assembled[None])
         box = self._ranges
-        for _ in range(ROUNDS if len(self.split.independent) else 0):
+        for _ in range(FLOODS if len(self.split.independent) else 0):
             before = len(reached.q)
             reached = self._flooded(reached, rng.uniform(*box, (WAYPOINTS, len(box[0]))))
             box = self._around(reached.q)

@@ -22,7 +22,7 @@ def unusable(time: Array, values: Array) -> int | None:
 
 
 @dataclass(frozen=True)
-class Move:
+class CubicMove:
     """One coordinate goes from value `first` to `last` [rad or m] between the times `start` and `end` [s]."""
 
     coordinate: str
@@ -37,7 +37,7 @@ class Move:
         return self.first + (self.last - self.first) * s**2 * (3 - 2 * s)
 
 
-def follow(coordinates: Sequence[str], moves: Iterable[Move], t: Array) -> Array:
+def follow(coordinates: Sequence[str], moves: Iterable[CubicMove], t: Array) -> Array:
     """(T, n) the configurations at times `t` (T,) [s]; the moves of one coordinate come in the order of time.
 
     A coordinate that no move names stays at 0.

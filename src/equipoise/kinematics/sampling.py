@@ -12,14 +12,14 @@ from ..model.errors import Fault, InputError
 from .tree import Tree
 
 SLIDE = 1.0  # [m] a prismatic joint without a range is sampled over +-SLIDE
-NOTHING = 1e-9  # a smaller coupling ratio turns nothing
+LEAST_RATIO = 1e-9  # a smaller coupling ratio turns nothing
 TRIES = 200  # rounds of rejection sampling before the ranges are called contradictory
 
 
 def slowest(tree: Tree) -> Array:
     """(n,) the least ratio at which each angle turns any joint, at most 1: how far a gear reduces. 1 for a slide."""
     ratios = np.abs(tree.C[tree.rotates])
-    ratios = np.where(ratios > NOTHING, ratios, np.inf)
+    ratios = np.where(ratios > LEAST_RATIO, ratios, np.inf)
     return np.where(tree.turns, ratios.min(axis=0, initial=1.0), 1.0)
 
 

@@ -17,7 +17,7 @@ APART = 30.0  # how far the longest lengths are above all others when they are i
 FEW = 0.25  # of all lengths are that, at most
 FAR = 10.0  # times its reach: nothing of a mechanism is that large
 EARTH = (9.7, 9.9)  # [m/s^2] gravity on the ground
-MOST = 6  # names in one message; the others are counted
+NAMES_SHOWN = 6  # names in one message; the others are counted
 
 
 def slips(mechanism: Mechanism) -> list[str]:
@@ -54,7 +54,9 @@ def twice(mechanism: Mechanism, body: str, point: Iterable[float]) -> list[str]:
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(names[:MOST]) + (f" and {len(names) - MOST} more" if len(names) > MOST else "")
+    return ", ".join(names[:NAMES_SHOWN]) + (
+        f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
+    )
 
 
 def _angles(m: Mechanism) -> Iterator[tuple[str, str]]:

@@ -18,7 +18,15 @@ if TYPE_CHECKING:
 
 MAX_SAMPLES = 1_000_000
 MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
-MOST = {"bodies": 300, "joints": 300, "couplings": 300, "loops": 100, "springs": 500, "masses": 500, "capsules": 500}
+LARGEST_COUNTS = {
+    "bodies": 300,
+    "joints": 300,
+    "couplings": 300,
+    "loops": 100,
+    "springs": 500,
+    "masses": 500,
+    "capsules": 500,
+}
 """What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
 
@@ -32,7 +40,7 @@ def faults(mechanism: Mechanism) -> list[Fault]:
 
 
 def _sizes(m: Mechanism) -> Iterator[Fault]:
-    for kind, most in MOST.items():
+    for kind, most in LARGEST_COUNTS.items():
         if (count := len(getattr(m, kind))) > most:
             yield Fault((kind,), f"at most {most} are worked with, found {count:,}")
 

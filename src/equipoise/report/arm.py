@@ -10,7 +10,7 @@ from ..kinematics import Poses
 from ..model.arrays import Array
 from . import style
 from .poses import View
-from .skeleton import SAME, Bar, Point, Skeleton
+from .skeleton import COINCIDE, Bar, Point, Skeleton
 
 COILS, LEAST = 12, 4  # of a spring; a short one is drawn with fewer, that they stay apart
 THICK, MANY = 11.0, 12  # [pt] width of a body; thinner when there are many
@@ -96,7 +96,7 @@ class _Pen:
     def joint(self, point: Point) -> None:
         p, size = self.at(point), self.thick * 0.78
         order = max(
-            (o for ends, o in self.drawn if np.linalg.norm(ends - p, axis=1).min() < SAME), default=self.order(p)
+            (o for ends, o in self.drawn if np.linalg.norm(ends - p, axis=1).min() < COINCIDE), default=self.order(p)
         )
         look = {"marker": "o", "markersize": size, "markerfacecolor": "white", "markeredgecolor": style.EDGE}
         self.line(self.view.flat(p[None]), style.EDGE, 0, order + 0.002, markeredgewidth=1.8, **look)

@@ -11,11 +11,11 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
-from ..hardware.realise.bill import Bill, Item, way_dict
+from ..hardware.realise.bill import Bill, BillItem, way_dict
 from ..hardware.realise.realisations import FRICTION
 from ..hardware.sizing.extension import ExtensionSpring
 from ..hardware.sizing.wire import MM
-from ..hardware.stock.selection import Choice
+from ..hardware.stock.selection import Selection
 from ..model.elements import lines
 
 # what the spreadsheet holds of each chosen spring, in the order of its columns; all in SI units
@@ -106,7 +106,7 @@ def _built(bill: Bill) -> Iterator[Text]:
         )
 
 
-def _weak(bill: Bill, item: Item) -> bool:
+def _weak(bill: Bill, item: BillItem) -> bool:
     way = item.chosen
     return way is not None and way_dict(item, way, bill.options.limits)["fatigue_margin"] < 1
 
@@ -123,7 +123,7 @@ def bill_csv(bill: Bill) -> str:
     return text.getvalue()
 
 
-def choice_lines(choice: Choice, before: Balance, after: Balance) -> Iterator[RenderableType]:
+def choice_lines(choice: Selection, before: Balance, after: Balance) -> Iterator[RenderableType]:
     """Which stock springs were taken, where their attachments moved, and the proof."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("spring")

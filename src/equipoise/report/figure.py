@@ -195,8 +195,8 @@ def _torque(figure: Any, balance: Balance) -> None:
         loads.draw(axes, balance, kind, group)
         top -= row * len(group) + gap
     text = f"solid: rms; pale and number: largest, over {balance.certificate.samples} random poses"
-    if len(rows) == loads.MOST < len(names):
-        text += f"\nthe {loads.MOST} of {len(names)} coordinates with the largest unbalanced torque"
+    if len(rows) == loads.BARS_SHOWN < len(names):
+        text += f"\nthe {loads.BARS_SHOWN} of {len(names)} coordinates with the largest unbalanced torque"
     elif len(rows) < len(names):
         text += "\nwithout load: " + style.clean(", ".join(name for i, name in enumerate(names) if i not in rows), 50)
     figure.text(0.625, top + gap - 0.11, text, va="top", fontsize=11, color=style.FAINT, parse_math=False)

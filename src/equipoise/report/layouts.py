@@ -9,12 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from ..synthesis.planar.installing import upward
-from ..synthesis.planar.layouts import Feasible, Search, labels, name, span
+from ..synthesis.planar.layouts import Feasible, LayoutSearch, labels, name, span
 
 COSTS = {"springs": "springs", "span": "joints that springs span", "weighted": "weighted cost"}
 
 
-def layout_lines(search: Search, equations: str = "") -> Iterator[RenderableType]:
+def layout_lines(search: LayoutSearch, equations: str = "") -> Iterator[RenderableType]:
     """Every feasible layout of least cost with its springs, and the counts.
 
     Args:
@@ -44,7 +44,7 @@ def spring_table(one: Feasible) -> Table:
     return table
 
 
-def count_lines(search: Search) -> Iterator[str]:
+def count_lines(search: LayoutSearch) -> Iterator[str]:
     """How many candidates there were, what excluded them, and what that says of the minimum."""
     pruned = ", ".join(f"{key} {len(layouts)}" for key, layouts in search.pruned.items())
     total = sum(len(layouts) for layouts in search.pruned.values())

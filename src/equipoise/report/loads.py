@@ -11,7 +11,7 @@ from ..model.arrays import Array, Integers
 from ..model.coordinate import Coordinate, Slide
 from . import style
 
-MOST = 12  # coordinates shown
+BARS_SHOWN = 12  # coordinates shown
 NAME = 24  # letters of a coordinate's name
 THICKEST = 0.3  # [in] a bar
 TINY = 1e-9  # [N m or N] torque below this is shown as nothing
@@ -20,13 +20,13 @@ Kind = type[Coordinate]  # all that turn, or all that slide
 
 
 def shown(balance: Balance) -> dict[Kind, Integers]:
-    """Kind -> numbers of the coordinates to show, in their order, at most `MOST` in all."""
+    """Kind -> numbers of the coordinates to show, in their order, at most `BARS_SHOWN` in all."""
     turns = np.array([coordinate.turns for coordinate in balance.coordinates], bool)
     share = np.zeros(len(turns))
     for own in (turns, ~turns):
         largest = balance.unbalanced.max[own].max(initial=0)
         share[own] = balance.unbalanced.max[own] / largest if largest > 0 else 0.0
-    keep = np.sort(np.argsort(-share, kind="stable")[:MOST])
+    keep = np.sort(np.argsort(-share, kind="stable")[:BARS_SHOWN])
     groups: dict[Kind, Integers] = {Coordinate: keep[turns[keep]], Slide: keep[~turns[keep]]}
     groups = {kind: rows for kind, rows in groups.items() if len(rows)}
     loaded = {kind: rows for kind, rows in groups.items() if _top(balance, rows) > TINY}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .._version import __version__
-from ..hardware.realise.bill import Bill, Item
+from ..hardware.realise.bill import Bill, BillItem
 from ..hardware.realise.realisations import Realisation
 from ..hardware.sizing.compression import CompressionSpring
 from ..hardware.sizing.wire import MM, MPA
@@ -47,7 +47,7 @@ def sheet(bill: Bill) -> Drawing:
     return drawing
 
 
-def _data(bill: Bill, item: Item, way: Realisation) -> Iterator[tuple[str, str]]:
+def _data(bill: Bill, item: BillItem, way: Realisation) -> Iterator[tuple[str, str]]:
     s, limits = way.winding.spring, bill.options.limits
     least, most = item.forces(way)
     yield "realisation", way.kind

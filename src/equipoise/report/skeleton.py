@@ -12,7 +12,7 @@ from ..kinematics import Poses, Tree
 from ..model.arrays import Array
 from ..model.mechanism import Mechanism
 
-SAME = 1e-6  # [m] points closer than this are drawn as one
+COINCIDE = 1e-6  # [m] points closer than this are drawn as one
 
 
 class Point(NamedTuple):
@@ -79,7 +79,7 @@ class Skeleton:
         brackets = [_bracket(end, bars, base, fixed, rest) for end in (*ends, *masses)]
         return Skeleton(
             bars=bars,
-            brackets=tuple(bar for bar in brackets if _length(bar, rest) > SAME),
+            brackets=tuple(bar for bar in brackets if _length(bar, rest) > COINCIDE),
             joints=(*(Point(link.parent, link.p0) for link in tree.links if link.joint.type != "fixed"), *met),
             base=base,
             springs=springs,
@@ -102,7 +102,7 @@ class Skeleton:
         if not found:
             return np.zeros((len(poses.p), 0, 3))
         places = np.stack([end.at(poses) for end in found], axis=1)
-        coincide = {j for i, j in combinations(range(len(found)), 2) if _apart(places[:, i] - places[:, j]) < SAME}
+        coincide = {j for i, j in combinations(range(len(found)), 2) if _apart(places[:, i] - places[:, j]) < COINCIDE}
         return places[:, [i for i in range(len(found)) if i not in coincide]]
 
     def ends(self, poses: Poses) -> Array:
@@ -123,12 +123,12 @@ def _met(tree: Tree) -> tuple[Point, ...]:
 def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
     origin, bars = np.zeros(3), []
     for link in tree.links:
-        if link.parent and np.linalg.norm(link.p0) > SAME:
+        if link.parent and np.linalg.norm(link.p0) > COINCIDE:
             bars.append(Bar(link.parent, Point(link.parent, origin), Point(link.parent, link.p0)))
         if link.slide is not None:
             bars.append(Bar(link.body, Point(link.parent, link.p0), Point(link.body, origin)))
     met = [end for end in _met(tree) if end.body]
-    bars += [Bar(end.body, Point(end.body, origin), end) for end in met if np.linalg.norm(end.p) > SAME]
+    bars += [Bar(end.body, Point(end.body, origin), end) for end in met if np.linalg.norm(end.p) > COINCIDE]
     parents = {link.parent for link in tree.links}
     closed = {end.body for end in met}
     for i, body in enumerate(tree.mechanism.bodies, start=1):
@@ -136,7 +136,7 @@ def _bars(tree: Tree, masses: tuple[Point, ...]) -> tuple[Bar, ...]:
             [np.array(body.com)] if body.mass and i not in closed else []
         )
         tip = max(loads, key=lambda p: float(np.linalg.norm(p)), default=origin)
-        if i not in parents and np.linalg.norm(tip) > SAME:
+        if i not in parents and np.linalg.norm(tip) > COINCIDE:
             bars.append(Bar(i, Point(i, origin), Point(i, tip)))
     return tuple(bars)
 
@@ -150,7 +150,7 @@ def _bracket(end: Point, bars: tuple[Bar, ...], base: tuple[Point, ...], fixed: 
     for bar in bars:
         if bar.a.body in group and bar.b.body in group:
             a, b = bar.a.at(rest)[0], bar.b.at(rest)[0]
-            along = np.clip((here - a) @ (b - a) / max(float((b - a) @ (b - a)), SAME**2), 0, 1)
+            along = np.clip((here - a) @ (b - a) / max(float((b - a) @ (b - a)), COINCIDE**2), 0, 1)
             near = a + along * (b - a)
             if np.linalg.norm(here - near) < np.linalg.norm(here - foot):
                 foot = near

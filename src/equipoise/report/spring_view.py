@@ -17,7 +17,7 @@ from .drawing import HIDDEN, THICK, THIN, Drawing, Line, Pair
 Turns = Callable[[Any], Any]  # turns of the wire -> mm along the axis
 LONG, HIGH = 128.0, 30.0  # [mm] on the sheet
 ENDS = 5  # coils that are drawn at each end of one that is shortened
-MOST = 40  # coils that are drawn one by one
+COILS_DRAWN = 40  # coils that are drawn one by one
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05)
 STEEL = "#3A4756"
 AXIS = (6.0, 1.2, 0.6, 1.2)
@@ -31,7 +31,7 @@ def draw_spring(drawing: Drawing, spring: ExtensionSpring | CompressionSpring, a
     coils = spring.n if extension else spring.n + 2
     drawn = float(coils)
     scale = next((s for s in SCALES if s * whole <= LONG and s * spring.outer / MM <= HIGH), 0.0)
-    if coils > MOST or scale < 0.5:
+    if coils > COILS_DRAWN or scale < 0.5:
         # shortened: a view of both ends
         drawn = min(float(coils), 2.0 * ENDS)
         pitch = _pitch(spring)

@@ -13,15 +13,15 @@ import numpy as np
 
 from ..balance import check
 from ..energy.evaluate import Potential
-from ..kinematics.motion import Move, follow
+from ..kinematics.motion import CubicMove, follow
 from ..model.arrays import Array
 from ..model.errors import EquipoiseError
 from ..model.mechanism import Body, Joint, Mechanism
 from ..synthesis.planar.arm import Installation, PlanarArm
-from ..synthesis.planar.criteria import Objective, failures, sign_failures
+from ..synthesis.planar.criteria import LayoutObjective, failures, sign_failures
 from ..synthesis.planar.exclusion import Layout
 from ..synthesis.planar.installing import STIFFNESS, A, B, Equations, Fixed, upward
-from ..synthesis.planar.layouts import Search, labels, name, search, span
+from ..synthesis.planar.layouts import LayoutSearch, labels, name, search, span
 from ..synthesis.planar.stiffness_blocks import StiffnessBlocks
 from .record import Plot, Reproduction, Row, spread
 
@@ -164,7 +164,7 @@ def balanced(case: Case) -> Mechanism:
 def motion() -> Array:
     """(T, 3) the joint angles of section 8 at `TIMES` [rad]."""
     moves = [
-        Move(f"joint {j}", start, start + 1.0, radians(POSES[start][j - 2]), radians(POSES[start + 1][j - 2]))
+        CubicMove(f"joint {j}", start, start + 1.0, radians(POSES[start][j - 2]), radians(POSES[start + 1][j - 2]))
         for j in TABLE_4
         for start in range(2)
     ]
@@ -210,7 +210,7 @@ _THIRD = (
 )
 
 
-def _same(table: str, n: int, published: tuple[str, ...], found: Search) -> Iterator[Row]:
+def _same(table: str, n: int, published: tuple[str, ...], found: LayoutSearch) -> Iterator[Row]:
     """The layouts in print that the search finds, each exact by the certificate, and how many more it finds."""
     names = [name(one.layout) for one in found.feasible]
     both = [layout for layout in published if layout in names]
@@ -225,7 +225,7 @@ def _same(table: str, n: int, published: tuple[str, ...], found: Search) -> Iter
 
 
 @cache
-def _search(n: int, objective: Objective) -> Search:
+def _search(n: int, objective: LayoutObjective) -> LayoutSearch:
     return search(n, objective)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..balance import Balance, check
 from ..energy.evaluate import Potential
-from ..kinematics.motion import Move, follow
+from ..kinematics.motion import CubicMove, follow
 from ..model.arrays import Array
 from ..model.errors import InfeasibleError
 from ..model.mechanism import Body, Joint, Mechanism, Workspace
@@ -60,12 +60,12 @@ def balanced(h2: float = H2, **options: Any) -> Design:
 def motion() -> Array:
     """(T, 4) shoulder and elbow at `TIMES` [rad]: one after the other, then all together."""
     moves = (
-        Move("shoulder.y", 0, 2, 0.0, -1.2),
-        Move("elbow", 1, 3, 0.0, 1.9),
-        Move("shoulder.x", 3, 5, 0.0, 0.8),
-        Move("shoulder.z", 3, 6, 0.0, 1.1),
-        Move("shoulder.y", 4, 6, -1.2, 0.9),
-        Move("elbow", 4, 6, 1.9, 0.4),
+        CubicMove("shoulder.y", 0, 2, 0.0, -1.2),
+        CubicMove("elbow", 1, 3, 0.0, 1.9),
+        CubicMove("shoulder.x", 3, 5, 0.0, 0.8),
+        CubicMove("shoulder.z", 3, 6, 0.0, 1.1),
+        CubicMove("shoulder.y", 4, 6, -1.2, 0.9),
+        CubicMove("elbow", 4, 6, 1.9, 0.4),
     )
     return follow(arm().coordinates, moves, TIMES)
 

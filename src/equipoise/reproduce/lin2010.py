@@ -19,7 +19,7 @@ from ..energy.reference import State
 from ..io.dh import expand
 from ..io.schema import DhRow, DhTable
 from ..kinematics import Tree
-from ..kinematics.motion import Move, follow
+from ..kinematics.motion import CubicMove, follow
 from ..model.arrays import Array
 from ..model.elements import lines
 from ..model.mechanism import Body, Mechanism
@@ -153,9 +153,9 @@ def motion() -> Array:
     return follow(arm().coordinates, moves().values(), TIMES)
 
 
-def moves() -> dict[int, Move]:
+def moves() -> dict[int, CubicMove]:
     """The moves of Table 4."""
-    return {i: Move(f"joint {i}", *row[:4]) for i, row in TABLE_4.items()}
+    return {i: CubicMove(f"joint {i}", *row[:4]) for i, row in TABLE_4.items()}
 
 
 def reproduction() -> Reproduction:

@@ -30,7 +30,7 @@ from .scatter import Scatter
 from .torque_map import TorqueMap
 
 POSES = 200
-ROUNDS = 20
+SETTLING_STEPS = 20
 KEPT = 1e-9  # of what the range of payload does, root mean square: less is balance
 SINGULAR = 1e-9  # of the largest: directions that do nothing
 EVERY_ATTACHMENT = Scatter(stiffness=0, attachment=1, mass=0, length=0)
@@ -171,7 +171,7 @@ class _Problem:
         """The springs set for a payload [kg], without it."""
         now = self.mechanism
         left = self._torque(self.payload.on(now, mass))
-        for _ in range(ROUNDS):
+        for _ in range(SETTLING_STEPS):
             J = np.concatenate(self._columns(now, handles), axis=1)
             step = np.asarray(np.linalg.lstsq(J, -left, rcond=SINGULAR)[0], float)
             for share in (1.0, 0.5, 0.25, 0.125):

@@ -14,7 +14,7 @@ from ..model.elements import lines
 from ..model.mechanism import Mechanism
 
 What = Literal["p_a", "p_b", "free_length"]
-MOST = 3  # springs moved at once
+SPRINGS_MOVED = 3  # springs moved at once
 
 
 @dataclass(frozen=True)
@@ -66,9 +66,9 @@ class Way:
 
 
 def sets(handles: Sequence[Handle]) -> Iterator[tuple[Handle, ...]]:
-    """The handles, at most one of each spring and at most `MOST`, fewer first."""
+    """The handles, at most one of each spring and at most `SPRINGS_MOVED`, fewer first."""
     springs = sorted({handle.spring for handle in handles})
-    for count in range(1, min(MOST, len(springs)) + 1):
+    for count in range(1, min(SPRINGS_MOVED, len(springs)) + 1):
         for some in combinations(springs, count):
             yield from product(*([h for h in handles if h.spring == i] for i in some))
 

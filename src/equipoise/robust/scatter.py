@@ -67,7 +67,7 @@ class Scatter:
 
 
 @dataclass(frozen=True)
-class Parameter:
+class ScatteredValue:
     """A value that scatters: `item` is the spring, body or joint it belongs to, `deviation` one standard deviation."""
 
     kind: Kind
@@ -91,7 +91,7 @@ class Lump:
     place: tuple[int, ...]
 
 
-class Drawing:
+class ScatterModel:
     """Which parameters a mechanism has, numbered; those without scatter are left out.
 
     Attributes:
@@ -109,7 +109,7 @@ class Drawing:
         if mechanism.loops and scatter.length:
             raise UnsupportedError("lengths cannot scatter where loops close: set them to 0 (--length 0)")
         self.scatter = scatter
-        self.parameters: list[Parameter] = []
+        self.parameters: list[ScatteredValue] = []
         index = Tree.of(mechanism).index
         springs = lines(mechanism, "tolerance")
         self.stiffness = [self._one("stiffness", s.name, "stiffness") for s in springs]
@@ -135,7 +135,7 @@ class Drawing:
         deviation = self.scatter.deviation(kind) * scale
         if not deviation:
             return None
-        self.parameters.append(Parameter(kind, item, value, deviation))
+        self.parameters.append(ScatteredValue(kind, item, value, deviation))
         return len(self.parameters) - 1
 
     def _three(self, kind: Kind, item: str, label: str) -> tuple[int, ...]:

@@ -16,10 +16,10 @@ from ..model.mechanism import Mechanism
 from ..model.progress import Progress, silent
 from ..model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from ..synthesis.mounts import Mounts
-from .scatter import Parameter, Scatter
+from .scatter import Scatter, ScatteredValue
 from .torque_map import TorqueMap
 
-MOST = 1_000_000_000  # builds times poses: some minutes
+MOST_WORK = 1_000_000_000  # builds times poses: some minutes
 CHUNK_ENTRIES = 1_500_000  # torques held at a time: they stay in the cache
 PERCENTILES = (5, 50, 95, 99)
 
@@ -42,7 +42,7 @@ class Tolerance:
     scatter: Scatter
     poses: int
     seed: int
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[ScatteredValue, ...]
     peak: Array
     friction: Mapping[str, float]
     nominal: Array
@@ -81,7 +81,7 @@ class Tolerance:
         return dict(sorted(total.items(), key=lambda item: -item[1]))
 
     @cached_property
-    def ranked(self) -> list[tuple[Parameter, float]]:
+    def ranked(self) -> list[tuple[ScatteredValue, float]]:
         """Every parameter with its share, largest first."""
         return [(self.parameters[i], float(self.share[i])) for i in np.argsort(-self.share, kind="stable")]
 
@@ -131,7 +131,7 @@ def tolerance(
         UnsupportedError: lengths scatter and the mechanism has loops.
     """
     whole_number("builds", builds, 2, MAX_SAMPLES)
-    whole_number("poses", poses, 1, min(MAX_SAMPLES, MOST // builds, MAX_NUMBERS // _numbers(mechanism)))
+    whole_number("poses", poses, 1, min(MAX_SAMPLES, MOST_WORK // builds, MAX_NUMBERS // _numbers(mechanism)))
     whole_number("seed", seed, 0)
     tree = Tree.of(mechanism)
     if not tree.n:

@@ -18,7 +18,7 @@ from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.mechanism import Mechanism
 from ..model.rotation import skew
-from .scatter import Drawing, Parameter, Scatter
+from .scatter import Scatter, ScatteredValue, ScatterModel
 
 RANK = 1e-11  # singular values below this share of the largest do nothing
 STEP = 1e-30  # of the complex step: what it differentiates are polynomials and square roots
@@ -56,8 +56,8 @@ class TorqueMap:
 
     def __init__(self, mechanism: Mechanism, q: Array, scatter: Scatter) -> None:
         tree = Tree.of(mechanism)
-        self.drawing = Drawing(mechanism, scatter)
-        self.parameters: tuple[Parameter, ...] = tuple(self.drawing.parameters)
+        self.drawing = ScatterModel(mechanism, scatter)
+        self.parameters: tuple[ScatteredValue, ...] = tuple(self.drawing.parameters)
         self.deviation = np.array([p.deviation for p in self.parameters])
         self.stiffness = np.array([s.stiffness for s in lines(mechanism, "tolerance")])
         self.nominal = Potential(mechanism)(q).torque.T.ravel()

@@ -8,7 +8,7 @@ from math import prod
 
 from ..model.errors import InfeasibleError
 
-SAME = 1e-9  # relative: values that agree
+AGREE = 1e-9  # relative: values that agree
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Product:
 
     def agrees(self, known: Mapping[str, float]) -> bool:
         """Whether the values of all its unknowns satisfy it."""
-        return abs(_ratio(self, known) - self.value) <= SAME * abs(self.value)
+        return abs(_ratio(self, known) - self.value) <= AGREE * abs(self.value)
 
 
 def fill(products: Sequence[Product], given: Mapping[str, float], defaults: Mapping[str, float]) -> dict[str, float]:

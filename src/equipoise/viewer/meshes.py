@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..io import files
-from ..io.xmltree import Document, Element
+from ..io.xmltree import Document, XmlElement
 from ..model.arrays import Array, frozen
 from ..model.rotation import from_rpy
 
@@ -17,7 +17,7 @@ PACKAGE = "package://"
 
 
 @frozen
-class Picture:
+class PlacedMesh:
     """A mesh of `body`, with its place and orientation in the body's frame [m]."""
 
     body: str
@@ -26,7 +26,7 @@ class Picture:
     R: Array
 
 
-def pictures(path: str | os.PathLike[str]) -> list[Picture]:
+def pictures(path: str | os.PathLike[str]) -> list[PlacedMesh]:
     """The visual meshes of a URDF; none for other files, and none for what is missing or cannot be read.
 
     A name ``package://NAME/REST`` is looked for as NAME/REST and as REST beside the file and in the folders above it.
@@ -43,11 +43,11 @@ def pictures(path: str | os.PathLike[str]) -> list[Picture]:
             if mesh is not None:
                 origin = visual.find("origin")
                 xyz, rpy = (_three(origin, key) for key in ("xyz", "rpy"))
-                found.append(Picture(link.attributes.get("name", ""), mesh, xyz, from_rpy(rpy)))
+                found.append(PlacedMesh(link.attributes.get("name", ""), mesh, xyz, from_rpy(rpy)))
     return found
 
 
-def _mesh(urdf: Path, shape: Element) -> Any:
+def _mesh(urdf: Path, shape: XmlElement) -> Any:
     name = shape.attributes.get("filename", "")
     file = _found(urdf.parent.resolve(), name)
     if file is None:
@@ -71,7 +71,7 @@ def _found(folder: Path, name: str) -> Path | None:
     return next((place for place in places if place.is_file()), None)
 
 
-def _three(element: Element | None, key: str, default: float = 0.0) -> Array:
+def _three(element: XmlElement | None, key: str, default: float = 0.0) -> Array:
     try:
         values = [float(word) for word in (element.attributes.get(key, "") if element is not None else "").split()]
     except ValueError:

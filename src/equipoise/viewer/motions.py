@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..kinematics import Tree, sample
-from ..kinematics.motion import Move, follow
+from ..kinematics.motion import CubicMove, follow
 from ..kinematics.sampling import bounds, inside
 from ..model.arrays import Array
 from ..model.mechanism import Mechanism
@@ -61,7 +61,7 @@ def _through(q: Array) -> Array:
     t = np.arange(0, LEG * (len(q) - 1) + 0.5 / RATE, 1 / RATE)
     names = [str(j) for j in range(q.shape[1])]
     moves = [
-        Move(names[j], LEG * k, LEG * (k + 1), q[k, j], q[k + 1, j])
+        CubicMove(names[j], LEG * k, LEG * (k + 1), q[k, j], q[k + 1, j])
         for k in range(len(q) - 1)
         for j in range(q.shape[1])
     ]

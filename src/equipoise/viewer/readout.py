@@ -10,7 +10,7 @@ from ..report import style, svg
 from ..report.text import verdict
 from .model import Model
 
-MOST = 12  # coordinates with bars
+BARS_SHOWN = 12  # coordinates with bars
 FONT = "font:13px/1.4 system-ui,sans-serif;padding:0 .8em"
 TITLE = "font-weight:600;margin:.3em 0 .1em"
 
@@ -38,7 +38,7 @@ def torques(model: Model) -> str:
     """Holding torque of every coordinate in this pose, without and with springs."""
     names = model.tree.coordinates
     before, after = model.state.gravity_torque[0], model.state.torque[0]
-    order = np.sort(np.argsort(-np.abs(before), kind="stable")[:MOST])
+    order = np.sort(np.argsort(-np.abs(before), kind="stable")[:BARS_SHOWN])
     words = [names[j].load_unit for j in order]
     title = "Holding torque in this pose"
     floor = 1e-9 * max(1.0, float(np.abs(before).max(initial=0)))

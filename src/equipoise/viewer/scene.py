@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ..model.arrays import Array
 from ..report import style
 from ..report.skeleton import Point, Skeleton
-from .meshes import Picture
+from .meshes import PlacedMesh
 from .model import Model
 from .shapes import across, capsule, coil, colour, wire
 
@@ -25,7 +25,7 @@ JOINT, MASS, LOAD = (236, 240, 244), (20, 26, 33), (214, 122, 30)
 class Scene:
     """Draws a `Model` with a viser scene, and keeps it up to date."""
 
-    def __init__(self, server: Any, model: Model, pictures: Sequence[Picture] = ()) -> None:
+    def __init__(self, server: Any, model: Model, pictures: Sequence[PlacedMesh] = ()) -> None:
         self.server, self.model, self.pictures = server, model, pictures
         self.springs: list[dict[str, Any]] = []
         points = Skeleton.of(model.mechanism).points(model.tree.poses(model.rest[None]))[0]

@@ -12,8 +12,8 @@ from ..model.errors import EquipoiseError
 from .model import Model
 from .scene import Scene
 
-MOST = 3.0  # the stiffness slider goes to this many times the present one
-SAME = 5e-5  # [m] a number field shows tenths of a millimetre
+SLIDER_REACH = 3.0  # the stiffness slider goes to this many times the present one
+FIELD_ROUNDING = 5e-5  # [m] a number field shows tenths of a millimetre
 FAR = 10.0  # sizes of the mechanism: attachments are this near their bodies' origins, or as the file has them
 
 
@@ -117,7 +117,7 @@ class SpringPanel:
         self.quiet = True
         for slider, knob in zip(self.sliders, spring.knobs, strict=True):
             value = knob.factor * getattr(spring, knob.field)
-            top = float(f"{MOST * value:.2g}") if knob.high is None else knob.high
+            top = float(f"{SLIDER_REACH * value:.2g}") if knob.high is None else knob.high
             low = top / 1000 if knob.low is None else knob.low
             slider.max, slider.min, slider.step = top, low, (top - low) / 1000 if knob.low is not None else top / 1000
             slider.value = value
@@ -143,7 +143,7 @@ class SpringPanel:
                     values[knob.field] = max(slider.value, slider.min) / knob.factor
             for name, point, (_, now) in zip(("p_a", "p_b"), self.points, spring.ends, strict=False):
                 p = np.array(point.value) / 1000.0
-                if np.abs(p - now).max() > 1.01 * SAME:
+                if np.abs(p - now).max() > 1.01 * FIELD_ROUNDING:
                     values[name] = tuple(float(x) for x in p)
             self._change(values)
 

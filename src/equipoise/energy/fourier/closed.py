@@ -28,7 +28,7 @@ from .frames import MAX_TERMS, Frames
 from .series import Series
 
 POSES = 96
-NOTHING = 1e-12  # [m] a loop that the relations close by themselves
+CLOSURE_ROUNDING = 1e-12  # [m] a loop that the relations close by themselves
 HOLDS = 1e-9  # [rad or m] a relation holds
 RATIO = 24  # largest denominator of a relation's coefficients
 
@@ -47,7 +47,7 @@ class ClosedEnergy(FourierEnergy):
         super().__init__(opened, max_terms)
         n = self.tree.n
         frames = Frames(self.tree, max_terms)
-        zeros = [series for series in _closures(frames, mechanism) if np.abs(series.coef).max() > NOTHING]
+        zeros = [series for series in _closures(frames, mechanism) if np.abs(series.coef).max() > CLOSURE_ROUNDING]
         if not zeros:
             return
         keys = np.hstack([np.rint(self.frequency * frames.denominators), self.degree]).astype(int)

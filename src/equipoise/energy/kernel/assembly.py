@@ -16,7 +16,7 @@ AHEAD = 256  # vectors that are fetched before their turn, all rows together: a 
 PARAMETERS = "ptr noalias %q, i64 %qrow, i64 %qpose, ptr %out, i64 %outrow, i64 %n, ptr %k, ptr %w"
 
 
-class Module:
+class KernelModule:
     """The module of a program.
 
     Its function `kernel` takes the `PARAMETERS`: inputs with the steps between their rows and between poses; outputs

@@ -67,7 +67,7 @@ class Seat:
 
 
 @dataclass(eq=False)
-class Layout:
+class FlatTree:
     """Frames and origins, number 0 of each the world's; `gravity` (3,) [m/s^2] in frame 0."""
 
     tree: Tree
@@ -77,9 +77,9 @@ class Layout:
     gravity: Array = field(default_factory=lambda: np.zeros(3))
 
     @staticmethod
-    def of(tree: Tree) -> Layout:
+    def of(tree: Tree) -> FlatTree:
         """The layout of a tree without loops."""
-        layout = Layout(tree, gravity=np.array(tree.mechanism.gravity, float))
+        layout = FlatTree(tree, gravity=np.array(tree.mechanism.gravity, float))
         for link in tree.links:
             layout._add(link)
         layout._align()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .assembly import Form, Module
+from .assembly import Form, KernelModule
 from .trace import Program
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Generated:
         form: Form = "gathered" if gathered else "streamed" if streamed and aligned else "rows"
         with self._compiling:
             if form not in self._forms:
-                self._forms[form] = _Compiled(Module(self.program, self.lanes, self.single, form))
+                self._forms[form] = _Compiled(KernelModule(self.program, self.lanes, self.single, form))
         return self._forms[form](q, out, N)
 
 
@@ -82,7 +82,7 @@ def _features() -> llvm.FeatureMap:
 class _Compiled:
     """A module, compiled."""
 
-    def __init__(self, code: Module) -> None:
+    def __init__(self, code: KernelModule) -> None:
         import llvmlite.binding as llvm
 
         machine = llvm.Target.from_default_triple().create_target_machine(

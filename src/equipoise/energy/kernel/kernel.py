@@ -20,7 +20,7 @@ from ...model.arrays import Array
 from ...model.errors import Fault, InputError, UnsupportedError, nearest
 from ...model.mechanism import Mechanism
 from . import by_numpy, generic, sines
-from .flat_tree import Layout
+from .flat_tree import FlatTree
 from .recursions import programs
 from .trace import Program
 
@@ -141,7 +141,7 @@ class _Code:
 
     @cached_property
     def programs(self) -> dict[str, Program]:
-        return {str(name): program for name, program in programs(Layout.of(self.tree), self.split).items()}
+        return {str(name): program for name, program in programs(FlatTree.of(self.tree), self.split).items()}
 
     @cached_property
     def program(self) -> Program:

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.elements.element import End, LinePen, Pens, Pull
-from .flat_tree import Layout, Turn
+from .flat_tree import FlatTree, Turn
 from .trace import Program, Trace, Value, Vector
 from .vectors import ZERO, about_x, about_z, add, angle_sum, constant, cross, cross_z, minus, plus, scaled
 
@@ -27,7 +27,7 @@ Recursion = Literal["local", "world"]
 RECURSIONS: tuple[Recursion, ...] = ("local", "world")
 
 
-def programs(layout: Layout, split: bool) -> dict[Recursion, Program]:
+def programs(layout: FlatTree, split: bool) -> dict[Recursion, Program]:
     """The program of every recursion.
 
     Its outputs with `split`: gravity's energy, the path of each spring, the torques of gravity (n) and of the
@@ -39,7 +39,7 @@ def programs(layout: Layout, split: bool) -> dict[Recursion, Program]:
 class Recurrence:
     """One mechanism written down on one trace."""
 
-    def __init__(self, layout: Layout) -> None:
+    def __init__(self, layout: FlatTree) -> None:
         self.layout, self.tree = layout, layout.tree
         self.t = Trace()
         q = [self.t.input(j) for j in range(self.tree.n)]

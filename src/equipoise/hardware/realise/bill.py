@@ -19,14 +19,14 @@ from ...model.progress import Progress, silent
 from ..sizing.compression import CompressionSpring
 from ..sizing.extension import ExtensionSpring
 from ..sizing.limits import SOURCES, Limits
-from ..sizing.winding import NOTHING
-from .installed import Leaves, leaves
+from ..sizing.winding import NO_TENSION
+from .installed import InstalledTorque, installed_torque
 from .realisations import KINDS, Options, Realisation, rank, realisations
 from .stretch import Straight
 
 
 @dataclass(frozen=True)
-class Item:
+class BillItem:
     """A spring of the design and the ways to make it, the best first."""
 
     spring: Spring
@@ -45,7 +45,7 @@ class Item:
         k = self.spring.stiffness / way.winding.count
         most = k * (self.use.max_length - free)
         least = k * max(self.use.min_length - free, 0.0)
-        return (least if least > NOTHING * most else 0.0), most
+        return (least if least > NO_TENSION * most else 0.0), most
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ class Bill:
     """
 
     balance: Balance
-    items: tuple[Item, ...]
+    items: tuple[BillItem, ...]
     options: Options
     built: Mechanism | None
-    left: Leaves | None
+    left: InstalledTorque | None
 
     @property
     def complete(self) -> bool:
@@ -114,14 +114,14 @@ def bill(
         ways = sorted(realisations(balance, i, options), key=rank)
         if kind is not None:
             ways.sort(key=lambda way: way.kind != kind)
-        items.append(Item(spring, use, tuple(ways)))
+        items.append(BillItem(spring, use, tuple(ways)))
     chosen = [item.chosen for item in items]
     made = [way for way in chosen if way is not None]
     if len(made) < len(chosen):
         return Bill(balance, tuple(items), options, None, None)
     built = mechanism.with_springs(_heavy(spring, way) for spring, way in zip(springs, made, strict=True))
     report("judging what is built", 1 - 1 / (len(chosen) + 1))
-    left = leaves(built, [way.stretch for way in made], [way.friction for way in made])
+    left = installed_torque(built, [way.stretch for way in made], [way.friction for way in made])
     return Bill(balance, tuple(items), options, built, left)
 
 
@@ -132,7 +132,7 @@ def _heavy(spring: Spring, way: Realisation) -> Spring:
     return replace(spring, free_length=free, mass=spring.mass + way.winding.mass, mass_split=split)
 
 
-def _item(item: Item, limits: Limits) -> dict[str, Any]:
+def _item(item: BillItem, limits: Limits) -> dict[str, Any]:
     return {
         "name": item.spring.name,
         "rate": item.spring.stiffness,
@@ -145,7 +145,7 @@ def _item(item: Item, limits: Limits) -> dict[str, Any]:
     }
 
 
-def way_dict(item: Item, way: Realisation, limits: Limits) -> dict[str, Any]:
+def way_dict(item: BillItem, way: Realisation, limits: Limits) -> dict[str, Any]:
     """All about one realisation; forces, sizes and mass are of each of the springs side by side."""
     s, count = way.winding.spring, way.winding.count
     least, most = item.forces(way)
@@ -185,7 +185,7 @@ def way_dict(item: Item, way: Realisation, limits: Limits) -> dict[str, Any]:
     }
 
 
-def _left(left: Leaves) -> dict[str, Any]:
+def _left(left: InstalledTorque) -> dict[str, Any]:
     return {"built": left.residual.tolist(), "built_share": left.share, "friction": left.friction.tolist()}
 
 

@@ -17,7 +17,7 @@ from .stretch import Stretch
 
 
 @frozen
-class Leaves:
+class InstalledTorque:
     """Torques [N m or N] over the workspace, (n,) each.
 
     Attributes:
@@ -66,14 +66,14 @@ class Torques:
         return gravity, springs
 
 
-def leaves(
+def installed_torque(
     mechanism: Mechanism,
     laws: Sequence[Stretch],
     friction: Sequence[float] | None = None,
     *,
     samples: int | None = None,
     seed: int = 0,
-) -> Leaves:
+) -> InstalledTorque:
     """Judge a mechanism whose springs are stretched by `laws`.
 
     Args:
@@ -93,4 +93,4 @@ def leaves(
     best, _ = climb(tree, quantities, q, seed)
     unbalanced, residual, band = np.split(best, [n, 2 * n])
     rms = np.sqrt(np.mean(quantities(q)[:, n : 2 * n] ** 2, axis=0))
-    return Leaves(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.coordinates))
+    return InstalledTorque(residual, rms, unbalanced, band, largest_share(residual, unbalanced, tree.coordinates))

@@ -29,7 +29,7 @@ from ...model.mechanism import Mechanism
 from ..sizing.limits import Limits
 from ..sizing.winding import Envelope, Need, Winding, compression, extension, side_by_side
 from ..sizing.wire import MM, WIRES, Wire
-from .installed import Torques, leaves
+from .installed import Torques, installed_torque
 from .stretch import Pulley, Straight, Stretch, beyond
 
 KINDS = ("direct", "case", "telescope", "pulley", "eyelet")
@@ -236,7 +236,7 @@ def _judged(mechanism: Mechanism, i: int, made: Realisation) -> Realisation:
         made.stretch if j == i else Straight(spring.free_length)
         for j, spring in enumerate(lines(mechanism, "hardware"))
     ]
-    judged = leaves(mechanism, laws)
+    judged = installed_torque(mechanism, laws)
     return replace(made, residual=judged.residual, share=judged.share)
 
 

@@ -24,8 +24,8 @@ from .wire import MM, Wire
 STEP = 0.1 * MM  # of the mean coil diameter
 MOST_PARALLEL = 8
 S = TypeVar("S", ExtensionSpring, CompressionSpring)
-NOTHING = 1e-3  # of the largest force: less initial tension than this is none
-SAME = 1e-9  # margins this close to what is asked for reach it
+NO_TENSION = 1e-3  # of the largest force: less initial tension than this is none
+REACHED = 1e-9  # margins this close to what is asked for reach it
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Winding:
     @property
     def feasible(self) -> bool:
         """Whether it can do what it must."""
-        return min(self.margins.values()) >= 1 - SAME
+        return min(self.margins.values()) >= 1 - REACHED
 
     @property
     def mass(self) -> float:
@@ -91,7 +91,7 @@ class Winding:
         if self.feasible:
             return ""
         short = ", ".join(
-            f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.margins.items() if value < 1 - SAME
+            f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.margins.items() if value < 1 - REACHED
         )
         s = self.spring
         nearest = f"d {s.d / MM:.3g} mm, D {s.D / MM:.4g} mm, {s.n:.3g} coils of {s.wire.name}"
@@ -122,7 +122,7 @@ def extension(
     limits, envelope = limits or Limits(), envelope or Envelope()
 
     def candidates(coils: Helical) -> tuple[ExtensionSpring, dict[str, Array]]:
-        least = need.least if need.least > NOTHING * need.most else 0.0
+        least = need.least if need.least > NO_TENSION * need.most else 0.0
         stress = np.minimum(limits.initial_stress(coils.index, coils.strength), coils.stress(least))
         tension = coils.force_at(stress)
         # loops may be drawn out until the line is the one that is wanted
@@ -205,7 +205,7 @@ def _lightest(candidates: Sequence[tuple[S, dict[str, Array]]], order: Callable[
     tried = sum(len(spring.d) for spring, _ in candidates)
     best = []
     for spring, margins in candidates:
-        least = np.minimum(np.min(np.stack(list(margins.values())), axis=0), 1 - SAME)
+        least = np.minimum(np.min(np.stack(list(margins.values())), axis=0), 1 - REACHED)
         first = np.zeros_like(least) if order is None else order(spring)
         # the nearest to feasible, then the first in order, then the lightest
         i = int(np.lexsort((spring.mass, first, -least))[0])

@@ -36,7 +36,7 @@ COLUMNS = {
 
 OPTIONAL = ("initial_tension", "price")
 KINDS = ("extension", "compression")
-MOST = 100_000  # springs
+LONGEST_LIST = 100_000  # springs
 
 
 @dataclass(frozen=True)
@@ -118,21 +118,21 @@ def _header(name: str) -> str:
 
 
 def _csv(path: Path) -> tuple[list[str], list[list[Any]]]:
-    (_, header), *rows = csv_rows(path, MOST)
+    (_, header), *rows = csv_rows(path, LONGEST_LIST)
     return header, [row for _, row in rows]
 
 
 def _parquet(path: Path) -> tuple[list[str], list[list[Any]]]:
-    columns = parquet_columns(path, MOST)
+    columns = parquet_columns(path, LONGEST_LIST)
     return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
 
 
-Place = tuple[int, float]  # column in the file, and what its numbers are multiplied by
+Column = tuple[int, float]  # column in the file, and what its numbers are multiplied by
 
 
-def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Place], list[Fault]]:
+def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Column], list[Fault]]:
     bare = {heading(text)[0]: (i, heading(text)[1]) for i, text in enumerate(header)}
-    places: dict[str, Place] = {}
+    places: dict[str, Column] = {}
     faults = [
         Fault((name,), f"no column {nearest(name, COLUMNS)}", tuple(COLUMNS)) for name in columns.keys() - COLUMNS
     ]
@@ -154,7 +154,7 @@ def _places(header: list[str], columns: dict[str, str]) -> tuple[dict[str, Place
     return places, faults
 
 
-def _stock(row: list[Any], places: Mapping[str, Place]) -> Stock:
+def _stock(row: list[Any], places: Mapping[str, Column]) -> Stock:
     values: dict[str, Any] = {}
     for name, (place, factor) in places.items():
         cell = row[place] if place < len(row) else ""

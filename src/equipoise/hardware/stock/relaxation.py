@@ -44,7 +44,7 @@ class Pull:
 
 
 @frozen
-class Solution:
+class Relaxed:
     """What the program found: stock of each spring, distances (springs, 2), the cost and a bound of every cost."""
 
     stock: tuple[int, ...]
@@ -95,7 +95,7 @@ class Relaxation:
                 cut = True
         return cut
 
-    def solve(self, fixed: tuple[int, ...] | None = None, seconds: float = np.inf) -> Solution | None:
+    def solve(self, fixed: tuple[int, ...] | None = None, seconds: float = np.inf) -> Relaxed | None:
         """The least cost; with the stock `fixed`, a point well inside. None when there is no solution.
 
         Raises:
@@ -239,14 +239,14 @@ class _Program:
             entries.append((self.x0[i] + at, 1.0))
         self.add(entries, -np.inf, len(out) - 1)
 
-    def read(self, values: Array, cost: float, bound: float) -> Solution:
+    def read(self, values: Array, cost: float, bound: float) -> Relaxed:
         """The solution in the terms of the relaxation."""
         stock, shares = [], np.empty((len(self.allowed), 2))
         for i, allowed in enumerate(self.allowed):
             stock.append(int(allowed[np.argmax(values[self.x0[i] : self.c0[i]])]))
             k, u, v, _ = (values[at].sum() for at in self.sums(i))
             shares[i] = u / k, v / k
-        return Solution(tuple(stock), shares, cost, bound)
+        return Relaxed(tuple(stock), shares, cost, bound)
 
 
 def _cells(a: Array, b: Array) -> list[tuple[float, float, float, float]]:

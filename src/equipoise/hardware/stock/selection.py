@@ -28,12 +28,12 @@ from .relaxation import OutOfTime, Pull, Relaxation
 Goal = Literal["mass", "price"]
 GOALS: tuple[Goal, ...] = ("mass", "price")
 CELLS = 3  # of each distance, to begin with
-ROUNDS = 60  # refinements of one set of springs before it counts as unsettled
+REFINEMENTS = 60  # refinements of one set of springs before it counts as unsettled
 OVER = 1e-9  # forces over their limit by this share are rounding
 
 
 @dataclass(frozen=True)
-class Choice:
+class Selection:
     """The best set of stock springs.
 
     Attributes:
@@ -92,7 +92,7 @@ def choose(
     travel: Travel | None = None,
     seconds: float = 60.0,
     progress: Progress | None = None,
-) -> Choice:
+) -> Selection:
     """Choose the best stock spring for every spring of a judged design, and move its attachments.
 
     A stock spring fits when it bears the largest force and is open at the smallest wherever its attachments may be.
@@ -108,7 +108,7 @@ def choose(
     say = progress or silent
     say("looking at the stock", 0.0)
     relaxation = _relaxation(movable, catalogue, goal)
-    best: Choice | None = None
+    best: Selection | None = None
     bound, settled, unsettled, open_bound = 0.0, 0, 0, np.inf
     while best is None or best.cost > bound * (1 + 1e-9):
         left = seconds - (monotonic() - start)
@@ -133,7 +133,7 @@ def choose(
             cost = float(relaxation.cost[list(found.stock)].sum())
             if best is None or cost < best.cost:
                 moved = movable.moved(np.array([s.rate for s in stock]), shares)
-                best = Choice(moved, stock, goal, cost, bound, settled, unsettled, 0.0)
+                best = Selection(moved, stock, goal, cost, bound, settled, unsettled, 0.0)
     if best is None:
         why = "no set of these springs does what the design's springs do"
         if bound < np.inf or unsettled:
@@ -227,7 +227,7 @@ def _settle(relaxation: Relaxation, stock: tuple[int, ...], shares: Array) -> Ar
     movable = relaxation.movable
     k = relaxation.stiffness[list(stock)] / np.array([s.stiffness for s in movable.springs])
     force = relaxation.force[list(stock)]
-    for _ in range(ROUNDS):
+    for _ in range(REFINEMENTS):
         inner = relaxation.solve(fixed=stock)
         if inner is None:
             return np.empty((0, 2))

@@ -20,7 +20,7 @@ from ...model.mechanism import Mechanism
 from ..mounts import Mounts
 from .moments import segments
 
-SAME = 1e-9  # of the mechanism's reach: closer points coincide
+COINCIDE = 1e-9  # of the mechanism's reach: closer points coincide
 
 
 @frozen
@@ -41,7 +41,7 @@ class Pivot:
             point, line = (self, other) if self.e is None else (other, self)
             return point if line.off(point.p) <= near else None
         across = np.cross(self.e, other.e)
-        if np.linalg.norm(across) <= SAME:
+        if np.linalg.norm(across) <= COINCIDE:
             return self if self.off(other.p) <= near else None
         s, t, _ = np.linalg.solve(np.column_stack([self.e, -other.e, across]), other.p - self.p)
         meeting = self.p + s * self.e
@@ -88,7 +88,7 @@ class ChainLink:
     def free(self) -> bool:
         """Whether its joint gives it every orientation: a ball joint, or three hinges that span space."""
         axes = [pivot.e for pivot in self.pivots if pivot.e is not None]
-        return len(axes) < len(self.pivots) or (bool(axes) and np.linalg.matrix_rank(np.array(axes), SAME) == 3)
+        return len(axes) < len(self.pivots) or (bool(axes) and np.linalg.matrix_rank(np.array(axes), COINCIDE) == 3)
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def chain(mechanism: Mechanism) -> Chain:
     mechanism = mechanism.with_springs(())
     tree = Tree.of(mechanism)
     zero = tree.poses(np.zeros((1, tree.n)))
-    near = SAME * Mounts.of(mechanism).reach
+    near = COINCIDE * Mounts.of(mechanism).reach
     ground, *moving = segments(mechanism)
     stages: list[_Stage] = []
     for link in moving:
@@ -235,4 +235,4 @@ def _in_line(pivot: Pivot, centre: Array, com: Array, near: float) -> Array:
     plane = np.column_stack([pivot.p - centre, pivot.e])
     (along, aside), *_ = np.linalg.lstsq(plane, com, rcond=None)
     off = np.linalg.norm(plane @ (along, aside) - com)
-    return pivot.p + aside / along * pivot.e if off <= near and abs(along) > SAME else pivot.p
+    return pivot.p + aside / along * pivot.e if off <= near and abs(along) > COINCIDE else pivot.p

@@ -21,7 +21,7 @@ from ...model.arrays import Array, frozen
 from ...model.masses import lumped_masses
 from ...model.mechanism import Joint, Mechanism
 
-NOTHING = 1e-12  # relative: what is nothing but rounding
+MOMENT_ROUNDING = 1e-12  # relative: what is nothing but rounding
 POSES = 64
 JOINED = ("fixed", "prismatic")
 
@@ -56,16 +56,16 @@ class Segment:
     @property
     def upright(self) -> bool:
         """Whether it only turns about the vertical: up is fixed in it."""
-        return float(np.ptp(self.ups, axis=0).max()) <= NOTHING
+        return float(np.ptp(self.ups, axis=0).max()) <= MOMENT_ROUNDING
 
     @property
     def level(self) -> bool:
         """Whether its joint's axis stays horizontal."""
-        return float(np.abs(self.ups @ self.axis).max()) <= NOTHING
+        return float(np.abs(self.ups @ self.axis).max()) <= MOMENT_ROUNDING
 
     def works(self, moment: Array, unit: float) -> bool:
         """Whether gravity does work on a moment (3,) [kg m] fixed in it: more than rounding of `unit` [kg m]."""
-        return float(np.ptp(self.ups @ moment)) > NOTHING * unit
+        return float(np.ptp(self.ups @ moment)) > MOMENT_ROUNDING * unit
 
 
 @frozen
@@ -186,7 +186,7 @@ def slide_faults(mechanism: Mechanism, links: Sequence[Segment]) -> Iterator[str
         root, motion = place[link.body].root, link.motions[0]
         segment = links[number.get(tree.names[root], 0)]
         axis = place[link.parent].R @ link.R0 @ motion.axis  # in the frame of the root
-        if segment.upright and abs(_vertical(tree, root, axis)) <= NOTHING:
+        if segment.upright and abs(_vertical(tree, root, axis)) <= MOMENT_ROUNDING:
             continue
         if turning[link.body]:
             yield (
@@ -198,7 +198,7 @@ def slide_faults(mechanism: Mechanism, links: Sequence[Segment]) -> Iterator[str
         rate = weight[link.body] * np.outer(axis, tree.C[motion.row])
         drift[root] = drift.get(root, np.zeros((3, tree.n))) + rate
     for root, rate in drift.items():
-        if np.abs(rate).max(initial=0) > NOTHING * weight[0]:
+        if np.abs(rate).max(initial=0) > MOMENT_ROUNDING * weight[0]:
             names = ", ".join(f"'{name}'" for name in slides[root])
             yield (
                 f"sliding {names} changes the moment of link '{links[number.get(tree.names[root], 0)].name}' by "

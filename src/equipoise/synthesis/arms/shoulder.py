@@ -19,7 +19,7 @@ import numpy as np
 from ...kinematics import Tree
 from ...model.arrays import Array, frozen
 from ...model.mechanism import Mechanism
-from .moments import NOTHING, Segment, moments, segments, slide_faults, upwards
+from .moments import MOMENT_ROUNDING, Segment, moments, segments, slide_faults, upwards
 
 RIGHT = 1e-9  # how nearly axes have to be perpendicular, and (relative to the sizes) intersect
 
@@ -109,7 +109,7 @@ def find(mechanism: Mechanism) -> tuple[Shoulder | None, list[str]]:
         return None, reasons
     along = pitch.axis * (pitch.axis @ found[i].vector)
     across = found[i].vector - along
-    if np.linalg.norm(across) <= NOTHING * unit:
+    if np.linalg.norm(across) <= MOMENT_ROUNDING * unit:
         return None, [f"gravity does no work on '{pitch.name}' when it pitches: a single spring on the roll joint does"]
     rolls = found[r].vector + R_12 @ along
     rolls = rolls - a_1 * (a_1 @ rolls)
@@ -117,7 +117,7 @@ def find(mechanism: Mechanism) -> tuple[Shoulder | None, list[str]]:
     return Shoulder(
         roll=roll,
         pitch=pitch,
-        roll_moment=rolls if np.linalg.norm(rolls) > NOTHING * unit else np.zeros(3),
+        roll_moment=rolls if np.linalg.norm(rolls) > MOMENT_ROUNDING * unit else np.zeros(3),
         pitch_moment=across,
         centre=pitch.origin - (pitch.tip @ a_2) * pitch.axis,
         up=home[tree.index[roll.joint.parent]].T @ up if roll.joint else up,

@@ -14,11 +14,11 @@ from math import comb
 import numpy as np
 
 from ...model.progress import Progress
-from .least_squares_form import Gram
+from .least_squares_form import LeastSquaresForm
 from .polish import STALL, Parts, best_amounts, polish, shape
 from .semidefinite import Bound, least_rms
 
-NOTHING = 1e-11  # share of the unbalanced torque that is only rounding here; the certificate has the last word
+ROUNDING_SHARE = 1e-11  # share of the unbalanced torque that is only rounding here; the certificate has the last word
 FEASIBLE = 1e-6  # a convex bound below this share is zero within the solver's tolerance
 EXHAUSTIVE = 500  # sets of blocks up to which every one gets its bound
 BEAM = 6  # otherwise only the best so many sets are extended by one more block
@@ -28,13 +28,13 @@ SHORT = 30  # iterations for all starts
 MORE = 128  # starts where an exact design may exist and was not found, on
 MANY = 200  # sets over the square of the number of parts, which is how their cost grows
 NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
-SAME = 1e-6  # relative: a part that improves less is not needed
+NOT_NEEDED = 1e-6  # relative: a part that improves less is not needed
 CLOSE = 1.001  # times the bound: as good as it
 SPLITS = 6  # ways to distribute the parts over the blocks of a set
 
 
 @dataclass(frozen=True)
-class Found:
+class SpringSet:
     """The best design found with at most `count` parts.
 
     Attributes:
@@ -51,14 +51,14 @@ class Found:
     @property
     def exact(self) -> bool:
         """Zero to rounding."""
-        return self.value < NOTHING
+        return self.value < ROUNDING_SHARE
 
 
 @dataclass
-class Search:
+class SpringSearch:
     """The search over sets of blocks of one problem. Remembers the bound of every set, and the sets by size."""
 
-    gram: Gram
+    reduced: LeastSquaresForm
     seed: int = 0
     progress: Progress | None = None
     bounds: dict[tuple[int, ...], Bound] = field(default_factory=dict)
@@ -67,17 +67,17 @@ class Search:
     def bound(self, blocks: tuple[int, ...]) -> float:
         """The convex bound of the blocks with these numbers."""
         if blocks not in self.bounds:
-            self.bounds[blocks] = least_rms(self.gram.on(blocks))
+            self.bounds[blocks] = least_rms(self.reduced.on(blocks))
         return self.bounds[blocks].value
 
     @property
     def floor(self) -> float:
         """The convex bound of all blocks together."""
-        return self.bound(tuple(range(len(self.gram.blocks))))
+        return self.bound(tuple(range(len(self.reduced.blocks))))
 
     def sets(self, size: int) -> tuple[list[tuple[int, ...]], bool]:
         """Sets of `size` blocks, best bound first, and whether every one was looked at."""
-        blocks = range(len(self.gram.blocks))
+        blocks = range(len(self.reduced.blocks))
         size = min(size, len(blocks))
         if size in self.ordered:
             return self.ordered[size]
@@ -93,11 +93,11 @@ class Search:
         self.ordered[size] = sorted(candidates, key=lambda c: (max(self.bound(c), FEASIBLE), c)), every
         return self.ordered[size]
 
-    def best(self, count: int) -> Found:
+    def best(self, count: int) -> SpringSet:
         """The best design found with at most `count` parts."""
         sets, every = self.sets(count)
         bound = self.bound(sets[0]) if every else None
-        smaller = [s for size in range(1, min(count, len(self.gram.blocks))) for s in self.sets(size)[0][:SETS]]
+        smaller = [s for size in range(1, min(count, len(self.reduced.blocks))) for s in self.sets(size)[0][:SETS]]
         promising = sorted([*sets[:SETS], *smaller], key=lambda c: (max(self.bound(c), FEASIBLE), len(c)))[: 2 * SETS]
         best = self._try(promising, count, bound, STARTS)
         if not best.exact:
@@ -111,7 +111,7 @@ class Search:
                     break
         return best
 
-    def front(self, most: int) -> Iterator[Found]:
+    def front(self, most: int) -> Iterator[SpringSet]:
         """The best designs found with at most 1, 2, ... parts, until exact, or as good as the bound, or `most`."""
         floor = self.floor
         last = self.best(1)
@@ -122,17 +122,17 @@ class Search:
             last = replace(kept, count=found.count, bound=found.bound)
             yield last
 
-    def pruned(self, found: Found) -> Found:
+    def pruned(self, found: SpringSet) -> SpringSet:
         """The same without the parts that are not needed: none can go without a loss."""
         count = found.parts.k.shape[1]
         for i in range(count if count > 1 else 0):
-            parts, value = polish(self.gram, found.parts.without(i))
+            parts, value = polish(self.reduced, found.parts.without(i))
             less = replace(found, parts=parts, value=float(value[0]))
-            if less.exact if found.exact else less.value <= found.value * (1 + SAME):
+            if less.exact if found.exact else less.value <= found.value * (1 + NOT_NEEDED):
                 return self.pruned(less)
         return found
 
-    def _try(self, sets: list[tuple[int, ...]], count: int, bound: float | None, starts: int) -> Found:
+    def _try(self, sets: list[tuple[int, ...]], count: int, bound: float | None, starts: int) -> SpringSet:
         best = self._polished(sets[0], count, bound, starts)
         for i, chosen in enumerate(sets[1:], 2):
             if self.bound(chosen) > best.value:
@@ -142,23 +142,23 @@ class Search:
             self._report(f"polishing {count} spring{'s' * (count > 1)}", i / len(sets))
         return best
 
-    def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None, starts: int) -> Found:
-        gram = self.gram.on(chosen)
+    def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None, starts: int) -> SpringSet:
+        reduced = self.reduced.on(chosen)
         rng = np.random.default_rng([self.seed, count, *chosen])
         spare = count - len(chosen)
         splits = list(islice(combinations_with_replacement(range(len(chosen)), spare), SPLITS))
         local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], starts, axis=0)
-        start = Parts.at(gram, local, np.ones(local.shape), rng.uniform(-1, 1, (*local.shape, shape(gram))))
-        parts, value = polish(gram, best_amounts(gram, start), SHORT)
-        parts, value = polish(gram, parts[np.argsort(value)[: len(parts) // 4 + 8]])
+        start = Parts.at(reduced, local, np.ones(local.shape), rng.uniform(-1, 1, (*local.shape, shape(reduced))))
+        parts, value = polish(reduced, best_amounts(reduced, start), SHORT)
+        parts, value = polish(reduced, parts[np.argsort(value)[: len(parts) // 4 + 8]])
         good = np.flatnonzero(value <= max(value.min() * (1 + NEARLY), 10 * STALL))
-        winner = good[parts.cost(gram)[good].argmin()]  # among equals, the one that stores least
+        winner = good[parts.cost(reduced)[good].argmin()]  # among equals, the one that stores least
         best = parts[winner : winner + 1]
-        return Found(count, replace(best, block=np.array(chosen)[best.block]), float(value[winner]), bound)
+        return SpringSet(count, replace(best, block=np.array(chosen)[best.block]), float(value[winner]), bound)
 
-    def _better(self, one: Found, other: Found) -> bool:
+    def _better(self, one: SpringSet, other: SpringSet) -> bool:
         if one.exact and other.exact:
-            return bool(one.parts.cost(self.gram)[0] < other.parts.cost(self.gram)[0])
+            return bool(one.parts.cost(self.reduced)[0] < other.parts.cost(self.reduced)[0])
         return one.value < other.value
 
     def _report(self, what: str, done: float) -> None:

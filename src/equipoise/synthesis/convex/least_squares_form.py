@@ -43,7 +43,7 @@ class Case:
 
 
 @frozen
-class Gram:
+class LeastSquaresForm:
     """The compressed problem, in units of the unbalanced torque.
 
     Attributes:
@@ -65,7 +65,7 @@ class Gram:
     averaged: bool
     cases: tuple[Case, ...]
 
-    def on(self, chosen: Sequence[int]) -> Gram:
+    def on(self, chosen: Sequence[int]) -> LeastSquaresForm:
         """The same problem restricted to some of its blocks (by number)."""
         cases = tuple(Case(tuple(case.columns[i] for i in chosen), case.load) for case in self.cases)
         parts = {name: tuple(getattr(self, name)[i] for i in chosen) for name in ("blocks", "columns", "cost")}
@@ -75,7 +75,7 @@ class Gram:
         """(rows,) ``sum_b columns_b x_b``: what the unknowns x do."""
         return sum((columns @ own for columns, own in zip(self.columns, x, strict=True)), np.zeros(len(self.d)))
 
-    def enlarged(self, factor: float) -> Gram:
+    def enlarged(self, factor: float) -> LeastSquaresForm:
         """The same problem with every region `factor` times as large about its centre."""
         larger = [block.enlarged(factor) for block in self.blocks]
 
@@ -93,7 +93,7 @@ class Gram:
         return [i for i, s in enumerate(strength) if s > 1e-9 * max(strength, default=0.0)]
 
 
-def build(problem: Problem, progress: Progress | None = None) -> Gram:
+def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresForm:
     """Compress a problem.
 
     Exact averages need revolute and spherical joints, unlimited or limited to whole turns; else samples are taken.
@@ -120,7 +120,7 @@ def build(problem: Problem, progress: Progress | None = None) -> Gram:
     columns = _split(S[:rank, None] * Vt[:rank] / unit, blocks)
     cost = tuple(block.cost(own) for block, own in zip(blocks, _split(energy, blocks), strict=True))
     cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in factors)
-    return Gram(problem, blocks, columns, d / unit, float(rest) / unit, cost, total, averaged, cases)
+    return LeastSquaresForm(problem, blocks, columns, d / unit, float(rest) / unit, cost, total, averaged, cases)
 
 
 def together(problem: Problem) -> list[tuple[Mechanism, ...]]:

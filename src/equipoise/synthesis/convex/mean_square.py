@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.arrays import Array, frozen
-from .least_squares_form import Gram
+from .least_squares_form import LeastSquaresForm
 from .polish import Parts, by_block, unit_torque
 
 
@@ -22,10 +22,10 @@ class Quadratic:
     c: float
 
     @staticmethod
-    def of(gram: Gram, parts: Parts) -> Quadratic:
+    def of(reduced: LeastSquaresForm, parts: Parts) -> Quadratic:
         """Of one set (a batch of one), whose shapes stay."""
-        A = unit_torque(gram, parts)[0]
-        return Quadratic(A @ A.T, A @ gram.d, float(gram.d @ gram.d) + gram.rest**2)
+        A = unit_torque(reduced, parts)[0]
+        return Quadratic(A @ A.T, A @ reduced.d, float(reduced.d @ reduced.d) + reduced.rest**2)
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Values (N,) and gradients (N, parts) at the amounts x (N, parts): of springs the stiffnesses [N/m]."""
@@ -33,19 +33,25 @@ class Quadratic:
         return np.einsum("ns,ns->n", x, half + self.b) + self.c, 2 * half
 
 
-def mean_square(gram: Gram, parts: Parts) -> tuple[Array, Array, Array]:
+def mean_square(reduced: LeastSquaresForm, parts: Parts) -> tuple[Array, Array, Array]:
     """Mean square torque, as a share of the unbalanced one squared, and its gradient.
 
     Returns:
         Values (batch,), derivatives by the amounts (batch, parts), of springs [m/N], and by the shapes
         (batch, parts, shape).
     """
-    r = np.tile(gram.d, (len(parts), 1))
+    r = np.tile(reduced.d, (len(parts), 1))
     by_k, by_u = np.empty(parts.k.shape), np.zeros(parts.u.shape)
     rows = np.broadcast_to(np.arange(len(parts))[:, None], parts.k.shape)
     each = [
-        (at, rows[at], gram.columns[number], own.part(parts.u[at, : own.shape]), own.slopes(parts.u[at, : own.shape]))
-        for own, at, number in by_block(gram, parts.block)
+        (
+            at,
+            rows[at],
+            reduced.columns[number],
+            own.part(parts.u[at, : own.shape]),
+            own.slopes(parts.u[at, : own.shape]),
+        )
+        for own, at, number in by_block(reduced, parts.block)
     ]
     for at, row, columns, part, _ in each:
         x = np.zeros((len(parts), part.shape[1]))
@@ -55,4 +61,4 @@ def mean_square(gram: Gram, parts: Parts) -> tuple[Array, Array, Array]:
         slope = (2 * r @ columns)[row]  # by the unknowns of each part
         by_k[at] = np.einsum("nx,nx->n", part, slope)
         by_u[at, : slopes.shape[1]] = parts.k[at, None] * (slopes @ slope[..., None])[..., 0]
-    return np.einsum("br,br->b", r, r) + gram.rest**2, by_k, by_u
+    return np.einsum("br,br->b", r, r) + reduced.rest**2, by_k, by_u

@@ -18,13 +18,13 @@ from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
-from .candidates import Judge
-from .few_springs import FEASIBLE, NOTHING, Found, Search
-from .least_squares_form import Gram, build
+from .candidates import Candidates
+from .few_springs import FEASIBLE, ROUNDING_SHARE, SpringSearch, SpringSet
+from .least_squares_form import LeastSquaresForm, build
 from .semidefinite import least_rms
 
 ROUNDING = 1e-13
-MOST = 8  # springs tried when no number is given
+SPRINGS_TRIED = 8  # springs tried when no number is given
 NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
 FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
 REMEDIES = 24  # other pairs tried when exact balance is infeasible
@@ -75,16 +75,16 @@ def solve(problem: Problem, options: SolverOptions) -> Design:
     if options.springs is not None:
         whole_number("springs", options.springs, 1)
     whole_number("seed", options.seed, 0)
-    gram = _worth_solving(build(problem, options.progress))
-    search = Search(gram, options.seed, options.progress)
+    reduced = _worth_solving(build(problem, options.progress))
+    search = SpringSearch(reduced, options.seed, options.progress)
     bound = search.floor
-    infeasible = None if bound < FEASIBLE else _infeasible(gram, bound)
+    infeasible = None if bound < FEASIBLE else _infeasible(reduced, bound)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
     found, tried = _found(search, options.springs, bound, options.front)
-    judge = Judge(gram, 0.0 if infeasible is None else bound)
+    judge = Candidates(reduced, 0.0 if infeasible is None else bound)
     best = judge(search.pruned(found))
-    averaged = gram.averaged and problem.objective == "rms"
+    averaged = reduced.averaged and problem.objective == "rms"
     design = Design(
         mechanism=best.mechanism,
         method="convex",
@@ -120,27 +120,27 @@ def applies(mechanism: Mechanism) -> list[str]:
     return []
 
 
-def _worth_solving(gram: Gram) -> Gram:
+def _worth_solving(reduced: LeastSquaresForm) -> LeastSquaresForm:
     """The problem on those of its pairs that have an effect."""
-    mechanism = gram.problem.judged
+    mechanism = reduced.problem.judged
     weight = max(
         sum(mass for _, mass, _ in lumped_masses(case)) * float(np.linalg.norm(case.gravity))
-        for case in gram.problem.cases
+        for case in reduced.problem.cases
     )
-    if gram.unbalanced <= ROUNDING * weight * Mounts.of(mechanism).reach:
+    if reduced.unbalanced <= ROUNDING * weight * Mounts.of(mechanism).reach:
         what = "the springs that stay balance" if mechanism.springs else "gravity loads"
         which = "every joint that counts already" if mechanism.springs else "no joint that counts"
         raise InputError(f"mechanism '{mechanism.name}': nothing to balance, {what} {which}")
-    if not gram.useful:
+    if not reduced.useful:
         raise InfeasibleError("no spring on these pairs has any effect on a joint that counts")
-    return gram.on(gram.useful)
+    return reduced.on(reduced.useful)
 
 
-def _found(search: Search, springs: int | None, bound: float, every: bool) -> tuple[Found, list[Found]]:
+def _found(search: SpringSearch, springs: int | None, bound: float, every: bool) -> tuple[SpringSet, list[SpringSet]]:
     """The design to deliver, and what was tried: with `every`, also what comes after it."""
-    tried: list[Found] = []
-    enough: Found | None = None
-    for found in search.front(springs or MOST):
+    tried: list[SpringSet] = []
+    enough: SpringSet | None = None
+    for found in search.front(springs or SPRINGS_TRIED):
         tried.append(found)
         near = springs is None and bound >= FEASIBLE and found.value <= bound + NEAR
         if enough is None and (found.exact or near):
@@ -148,7 +148,7 @@ def _found(search: Search, springs: int | None, bound: float, every: bool) -> tu
             if not every:
                 break
     best = enough or tried[-1]
-    if best.value > 1 - NOTHING:
+    if best.value > 1 - ROUNDING_SHARE:
         raise InfeasibleError("no springs on these pairs lower the torque of the joints that count")
     if bound > best.value + FEASIBLE:
         raise EquipoiseError(
@@ -158,23 +158,23 @@ def _found(search: Search, springs: int | None, bound: float, every: bool) -> tu
     return best, tried
 
 
-def _infeasible(gram: Gram, bound: float) -> Infeasible:
-    problem = gram.problem
-    far = least_rms(gram.enlarged(FAR)).value
-    own = tuple(block.place for block in gram.blocks)
+def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
+    problem = reduced.problem
+    far = least_rms(reduced.enlarged(FAR)).value
+    own = tuple(block.place for block in reduced.blocks)
     present = {frozenset(pair) for pair in own}
     mounts = Mounts.of(problem.judged)
     # a large mechanism has hundreds of other pairs: the nearest ones are tried
     missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
     missing = sorted(missing, key=mounts.apart)[:REMEDIES]
     wider = problem.with_pairs([*(pair for pair in problem.pairs if pair in own), *missing])
-    if not gram.averaged:  # exact balance at a few hundred random poses is exact balance
+    if not reduced.averaged:  # exact balance at a few hundred random poses is exact balance
         wider = replace(wider, samples=FEW)
     wide = build(wider)
     number = {block.place: i for i, block in enumerate(wide.blocks)}
     stay = [number[place] for place in own]
     remedies = [p for p in missing if least_rms(wide.on([*stay, number[p]])).value < FEASIBLE]
-    unit = gram.unbalanced
+    unit = reduced.unbalanced
     far = far * unit if far >= FEASIBLE else 0.0
     return Infeasible(own, bound * unit, far, tuple(remedies), len(missing))
 

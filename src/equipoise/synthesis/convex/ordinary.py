@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...balance import Balance, check
-from ...clearance import Clearance, Room
+from ...clearance import Clearance, ClearanceConstraint
 from ...clearance import clearance as judge_room
 from ...kinematics import Tree, sample
 from ...model.elements import lines
@@ -28,7 +28,7 @@ from ...model.validate import MAX_SAMPLES, whole_number
 from ..problem import Region
 from .ordinary_fit import FREE_LENGTHS, Fit
 
-ROUNDS = 8  # of adding the poses with too little room
+ROOM_ROUNDS = 8  # of adding the poses with too little room
 WEIGHT = 10  # times that such a pose counts
 
 
@@ -126,7 +126,7 @@ def ordinary(
         replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
     )
 
-    def fitted(room: Room | None) -> Mechanism:
+    def fitted(room: ClearanceConstraint | None) -> Mechanism:
         fit = Fit(mechanism, lengths, regions or {}, q, room)
         found = [fit.solve(x, stiffness_factor, preload) for x in fit.starts(stiffness_factor)]
         return fit.mechanism_of(min(found, key=lambda one: one[1])[0])
@@ -135,8 +135,8 @@ def ordinary(
         return Ordinary(check(mechanism), check(plain), check(fitted(None)), lengths)
     before, narrow = judge_room(mechanism), q
     least = -np.inf
-    for _ in range(ROUNDS):
-        made = fitted(Room(mechanism, narrow, clearance))
+    for _ in range(ROOM_ROUNDS):
+        made = fitted(ClearanceConstraint(mechanism, narrow, clearance))
         after = judge_room(made)
         if after.least >= clearance:
             return Ordinary(check(mechanism), check(plain), check(made), lengths, (before, after))

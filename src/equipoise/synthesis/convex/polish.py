@@ -13,7 +13,7 @@ import numpy as np
 
 from ...model.arrays import Array, Booleans, Integers, frozen
 from .blocks import Block
-from .least_squares_form import Gram
+from .least_squares_form import LeastSquaresForm
 
 ITERATIONS = 150
 STALL = 1e-13  # residual norm (share of the unbalanced torque) that cannot be improved upon in double precision
@@ -35,10 +35,10 @@ class Parts:
     u: Array
 
     @staticmethod
-    def at(gram: Gram, block: Integers, k: Array, u: Array) -> Parts:
+    def at(reduced: LeastSquaresForm, block: Integers, k: Array, u: Array) -> Parts:
         """Parts with the possible shapes nearest to `u`."""
         u = u.copy()
-        for own, at, _ in by_block(gram, block):
+        for own, at, _ in by_block(reduced, block):
             u[at, : own.shape] = own.project(u[at, : own.shape])
             u[at, own.shape :] = 0.0
         return Parts(block, k, u)
@@ -54,60 +54,60 @@ class Parts:
         rest = [j for j in range(self.k.shape[1]) if j != i]
         return Parts(self.block[:, rest], self.k[:, rest], self.u[:, rest])
 
-    def moved(self, gram: Gram, step: Array) -> Parts:
+    def moved(self, reduced: LeastSquaresForm, step: Array) -> Parts:
         """The sets after a `step` (batch, parts, 1 + shape): log amount, then shape, back to where it is possible."""
-        return Parts.at(gram, self.block, self.k * np.exp(step[..., 0]), self.u + step[..., 1:])
+        return Parts.at(reduced, self.block, self.k * np.exp(step[..., 0]), self.u + step[..., 1:])
 
-    def unknowns(self, gram: Gram) -> list[Array]:
+    def unknowns(self, reduced: LeastSquaresForm) -> list[Array]:
         """What the parts of a set (a batch of one) add up to, for each block (unknowns,)."""
-        x = [np.zeros(block.unknowns) for block in gram.blocks]
-        for own, at, number in by_block(gram, self.block):
+        x = [np.zeros(block.unknowns) for block in reduced.blocks]
+        for own, at, number in by_block(reduced, self.block):
             x[number] = self.k[at] @ own.part(self.u[at, : own.shape])
         return x
 
-    def cost(self, gram: Gram) -> Array:
+    def cost(self, reduced: LeastSquaresForm) -> Array:
         """(batch,) what equal designs should have little of: mean stored energy, as a rule [J]."""
         each = np.empty(self.k.shape)
-        for own, at, number in by_block(gram, self.block):
-            each[at] = own.part(self.u[at, : own.shape]) @ gram.cost[number]
+        for own, at, number in by_block(reduced, self.block):
+            each[at] = own.part(self.u[at, : own.shape]) @ reduced.cost[number]
         return (self.k * each).sum(axis=1)
 
 
-def shape(gram: Gram) -> int:
+def shape(reduced: LeastSquaresForm) -> int:
     """The most coordinates that the shape of any part has."""
-    return max(block.shape for block in gram.blocks)
+    return max(block.shape for block in reduced.blocks)
 
 
-def by_block(gram: Gram, block: Integers) -> Iterator[tuple[Block, Booleans, int]]:
+def by_block(reduced: LeastSquaresForm, block: Integers) -> Iterator[tuple[Block, Booleans, int]]:
     """Each block that occurs, where it does, and its number."""
     for number in np.unique(block).tolist():
-        yield gram.blocks[number], block == number, number
+        yield reduced.blocks[number], block == number, number
 
 
-def residual(gram: Gram, parts: Parts) -> Array:
+def residual(reduced: LeastSquaresForm, parts: Parts) -> Array:
     """(batch, rows) residual of the Gram form, as a share of the unbalanced torque, `rest` not included."""
-    return np.einsum("bs,bsr->br", parts.k, unit_torque(gram, parts)) + gram.d
+    return np.einsum("bs,bsr->br", parts.k, unit_torque(reduced, parts)) + reduced.d
 
 
-def unit_torque(gram: Gram, parts: Parts) -> Array:
+def unit_torque(reduced: LeastSquaresForm, parts: Parts) -> Array:
     """(batch, parts, rows): what one unit of each part does."""
-    out = np.empty((*parts.k.shape, len(gram.d)))
-    for own, at, number in by_block(gram, parts.block):
-        out[at] = own.part(parts.u[at, : own.shape]) @ gram.columns[number].T
+    out = np.empty((*parts.k.shape, len(reduced.d)))
+    for own, at, number in by_block(reduced, parts.block):
+        out[at] = own.part(parts.u[at, : own.shape]) @ reduced.columns[number].T
     return out
 
 
-def best_amounts(gram: Gram, parts: Parts) -> Parts:
+def best_amounts(reduced: LeastSquaresForm, parts: Parts) -> Parts:
     """The same shapes in the amounts that leave least (each at least a trifle of the common scale)."""
-    A = unit_torque(gram, parts)
+    A = unit_torque(reduced, parts)
     H = A @ np.swapaxes(A, 1, 2)
     ridge = 1e-9 * np.trace(H, axis1=1, axis2=2)[:, None, None] * np.eye(H.shape[1]) + 1e-300 * np.eye(H.shape[1])
-    k = -np.linalg.solve(H + ridge, A @ gram.d[:, None])[..., 0]
+    k = -np.linalg.solve(H + ridge, A @ reduced.d[:, None])[..., 0]
     floor = 0.05 * np.abs(k).max(axis=1, keepdims=True)
     return Parts(parts.block, np.maximum(k, np.maximum(floor, 1e-9)), parts.u)
 
 
-def polish(gram: Gram, start: Parts, iterations: int = ITERATIONS) -> tuple[Parts, Array]:
+def polish(reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS) -> tuple[Parts, Array]:
     """Improve every set of a batch.
 
     Returns:
@@ -115,7 +115,7 @@ def polish(gram: Gram, start: Parts, iterations: int = ITERATIONS) -> tuple[Part
     """
     reference = np.log(start.k)
     now, damping = Parts(start.block, start.k.copy(), start.u.copy()), np.full(len(start), 1e-3)
-    r = residual(gram, now)
+    r = residual(reduced, now)
     cost = np.einsum("br,br->b", r, r)
     alive = np.ones(len(start), bool)
     slow = np.zeros(len(start), int)
@@ -123,8 +123,8 @@ def polish(gram: Gram, start: Parts, iterations: int = ITERATIONS) -> tuple[Part
         batch = np.flatnonzero(alive)
         if not len(batch):
             break
-        trial = _step(gram, now[batch], r[batch], damping[batch], reference[batch])
-        r_trial = residual(gram, trial)
+        trial = _step(reduced, now[batch], r[batch], damping[batch], reference[batch])
+        r_trial = residual(reduced, trial)
         cost_trial = np.einsum("br,br->b", r_trial, r_trial)
         better = cost_trial < cost[batch]
         gain = 1 - cost_trial / np.maximum(cost[batch], 1e-300)
@@ -134,14 +134,14 @@ def polish(gram: Gram, start: Parts, iterations: int = ITERATIONS) -> tuple[Part
         damping[batch] = np.clip(np.where(better, damping[batch] * 0.2, damping[batch] * 8.0), 1e-14, 1e8)
         slow[batch] = np.where(better & (gain > 1e-4), 0, slow[batch] + 1)
         alive[batch] = (cost[batch] > STALL**2) & (slow[batch] < 15) & (damping[batch] < 1e7)
-    return now, np.sqrt(cost + gram.rest**2)
+    return now, np.sqrt(cost + reduced.rest**2)
 
 
-def _step(gram: Gram, x: Parts, r: Array, damping: Array, reference: Array) -> Parts:
+def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, reference: Array) -> Parts:
     """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
-    J = jacobian(gram, x)
+    J = jacobian(reduced, x)
     B, S, width, _ = J.shape
-    free = _free(gram, x, J @ r[:, None, :, None])
+    free = _free(reduced, x, J @ r[:, None, :, None])
     J = (free @ J).reshape(B, S * width, -1)
     H, g = J @ np.swapaxes(J, 1, 2), J @ r[:, :, None]
     diagonal = np.einsum("bii->bi", H)  # a view: the damping goes onto H itself
@@ -150,24 +150,24 @@ def _step(gram: Gram, x: Parts, r: Array, damping: Array, reference: Array) -> P
     step[..., 1:] = np.clip(step[..., 1:], -1, 1)
     log_k = np.log(x.k)
     step[..., 0] = np.clip(np.clip(step[..., 0], -2, 2), reference - LOG_RANGE - log_k, reference + LOG_RANGE - log_k)
-    return x.moved(gram, step)
+    return x.moved(reduced, step)
 
 
-def jacobian(gram: Gram, x: Parts) -> Array:
+def jacobian(reduced: LeastSquaresForm, x: Parts) -> Array:
     """(batch, parts, 1 + shape, rows) derivative of `residual`: for each part by its log amount and by its shape."""
-    J = np.zeros((*x.u.shape[:2], 1 + x.u.shape[2], len(gram.d)))
-    for own, at, number in by_block(gram, x.block):
-        u, Q = x.u[at, : own.shape], gram.columns[number].T
+    J = np.zeros((*x.u.shape[:2], 1 + x.u.shape[2], len(reduced.d)))
+    for own, at, number in by_block(reduced, x.block):
+        u, Q = x.u[at, : own.shape], reduced.columns[number].T
         slopes = own.slopes(u).reshape(-1, own.unknowns) @ Q
-        J[at, 0], J[at, 1 : 1 + own.shape] = own.part(u) @ Q, slopes.reshape(-1, own.shape, len(gram.d))
+        J[at, 0], J[at, 1 : 1 + own.shape] = own.part(u) @ Q, slopes.reshape(-1, own.shape, len(reduced.d))
     return J * x.k[..., None, None]
 
 
-def _free(gram: Gram, x: Parts, gradient: Array) -> Array:
+def _free(reduced: LeastSquaresForm, x: Parts, gradient: Array) -> Array:
     """(B, S, 1 + shape, 1 + shape) projectors onto the directions a step may take."""
     free = np.zeros((*gradient.shape[:3], gradient.shape[2]))
     free[..., 0, 0] = 1.0
-    for own, at, _ in by_block(gram, x.block):
+    for own, at, _ in by_block(reduced, x.block):
         within = slice(1, 1 + own.shape)
         free[at, within, within] = own.free(x.u[at, : own.shape], gradient[at, within, 0])
     return free

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.arrays import Array, Integers, frozen
 from ...model.errors import EquipoiseError
-from .least_squares_form import Gram
+from .least_squares_form import LeastSquaresForm
 
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
@@ -39,18 +39,18 @@ class Program:
     Each block's unknowns are in a unit that makes its columns of size one.
     """
 
-    def __init__(self, gram: Gram, extra: int) -> None:
-        self.scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in gram.columns]
-        self.starts = np.cumsum([0, *(block.unknowns for block in gram.blocks)]).tolist()
+    def __init__(self, reduced: LeastSquaresForm, extra: int) -> None:
+        self.scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in reduced.columns]
+        self.starts = np.cumsum([0, *(block.unknowns for block in reduced.blocks)]).tolist()
         self.width = self.starts[-1] + extra
         self.columns = [  # as pieces of rows
-            (0, start, own * scale) for start, own, scale in zip(self.starts, gram.columns, self.scale, strict=False)
+            (0, start, own * scale) for start, own, scale in zip(self.starts, reduced.columns, self.scale, strict=False)
         ]
         self.entries: list[tuple[Integers, Integers, Array]] = []
         self.b: list[Array] = []
         self.cones: list[object] = []
         self.height = 0
-        for block, start, scale in zip(gram.blocks, self.starts, self.scale, strict=False):
+        for block, start, scale in zip(reduced.blocks, self.starts, self.scale, strict=False):
             for cone in block.cones():
                 g = np.zeros(len(cone.F)) if cone.g is None else cone.g / scale
                 self.add(cone.kind, g, [(0, start, -cone.F)])
@@ -92,24 +92,24 @@ class Program:
         return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), x)
 
 
-def least_rms(gram: Gram) -> Bound:
+def least_rms(reduced: LeastSquaresForm) -> Bound:
     """The bound for the root mean square torque of all joints together (rest included)."""
-    program = Program(gram, extra=1)
+    program = Program(reduced, extra=1)
     t = program.width - 1
-    norm = np.concatenate([[0.0], gram.d, [gram.rest]])
+    norm = np.concatenate([[0.0], reduced.d, [reduced.rest]])
     columns = [(1, start, -own) for _, start, own in program.columns]
     program.add("second order", norm, [*columns, (0, t, -np.eye(1))])
     return program.solve()
 
 
-def least_peak(gram: Gram, L: Array, load: Array) -> Bound:
-    """The bound for the largest of the torques ``|L w + load|`` with ``w = gram.times(x)``.
+def least_peak(reduced: LeastSquaresForm, L: Array, load: Array) -> Bound:
+    """The bound for the largest of the torques ``|L w + load|`` with ``w = reduced.times(x)``.
 
     Args:
         L: (rows, len(w)), load: (rows,), as shares of any unit: see `minimax.Peak`.
     """
     r = L.shape[1]
-    program = Program(gram, extra=r + 1)  # w, and the peak t
+    program = Program(reduced, extra=r + 1)  # w, and the peak t
     w, t = program.width - r - 1, program.width - 1
     program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
     for sign in (1.0, -1.0):

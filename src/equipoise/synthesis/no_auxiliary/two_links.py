@@ -26,7 +26,7 @@ from ...model.errors import InfeasibleError
 from ..arms.chain import Chain, ChainLink
 from ..products import Product, fill, show
 
-Layout = Literal["a", "b", "c", "d"]
+LayoutName = Literal["a", "b", "c", "d"]
 LAYOUTS: dict[str, tuple[int, int, int]] = {"b": (1, 1, 1), "a": (-1, -1, 1), "c": (1, -1, -1), "d": (-1, 1, -1)}
 """Signs of a12, b12 - l1 and b2; the paper's choice first, then those that extend fewer links."""
 FREE = ("k2", "a2", "b2", "k12", "a12", "b12")

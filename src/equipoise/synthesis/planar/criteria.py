@@ -27,7 +27,7 @@ from typing import Literal
 from .arm import Installation, PlanarArm
 from .exclusion import Layout
 
-Objective = Literal["springs", "span", "weighted"]
+LayoutObjective = Literal["springs", "span", "weighted"]
 """What is to be small: the number of springs, the joints that they span, or a weighted sum of both."""
 
 
@@ -48,7 +48,7 @@ def failures(layout: Layout, n: int) -> Iterator[Failure]:
         yield from test(layout, n)
 
 
-def objections(layout: Layout, n: int, objective: Objective) -> Iterator[Failure]:
+def objections(layout: Layout, n: int, objective: LayoutObjective) -> Iterator[Failure]:
     """What else the paper asks for an objective: S1-S3 for the fewest springs, J1-J4 for the smallest span."""
     if objective == "springs":
         yield from _fewest_springs(layout, n)

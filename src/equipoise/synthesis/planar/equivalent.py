@@ -22,7 +22,7 @@ from ...model.errors import InfeasibleError, UnsupportedError
 from .arm import Installation, PlanarArm
 from .stiffness_blocks import vector
 
-NOTHING = 1e-12  # of the largest entry of both rows
+ENTRY_ROUNDING = 1e-12  # of the largest entry of both rows
 
 Pair = tuple[Installation, Installation]
 
@@ -85,13 +85,13 @@ def _mixed(arm: PlanarArm, one: Installation, two: Installation, Q: Complexes) -
 
 def _read(arm: PlanarArm, row: Complexes, scale: float) -> Installation:
     """The spring whose matrix is row^H row: the links between its ends all count alike."""
-    acting = np.flatnonzero(abs(row) > NOTHING * scale)
+    acting = np.flatnonzero(abs(row) > ENTRY_ROUNDING * scale)
     if not len(acting):
         raise InfeasibleError("the two springs act as one")
     i, k = int(acting[0]), int(acting[-1])
     between = row[i + 1] if k > i + 1 else row[i]  # between neighbours any scale does: from the joint of link i
     off = abs(row[i + 1 : k] - between).max(initial=0)
-    if k == i or abs(between) <= NOTHING * scale or off > 1e-9 * abs(between):
+    if k == i or abs(between) <= ENTRY_ROUNDING * scale or off > 1e-9 * abs(between):
         raise InfeasibleError("no two springs have this effect: one would join links without what lies between them")
     a, b = -row[i] / between * arm.lengths[i], row[k] / between * arm.lengths[k]
     return Installation(i + 1, k + 1, float(abs(between) ** 2), complex(a), complex(b))

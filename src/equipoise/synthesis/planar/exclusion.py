@@ -41,7 +41,7 @@ class Leaf:
 
 
 @dataclass(frozen=True)
-class Split:
+class CaseSplit:
     """A case divided: the interval of `spring`'s alpha (0) or beta (1) cut at `at`."""
 
     spring: int
@@ -51,11 +51,11 @@ class Split:
     above: Proof
 
 
-Proof = Leaf | Split
+Proof = Leaf | CaseSplit
 
 
 @dataclass(frozen=True)
-class Rows:
+class CaseRows:
     """What the unknowns of a case satisfy: each row of `zero` is 0, of `positive` > 0, of `least` >= 0."""
 
     zero: list[Row]
@@ -72,7 +72,7 @@ def start(layout: Layout) -> Box:
     return tuple((alpha, beta) for alpha, beta in box)
 
 
-def rows(layout: Layout, n: int, box: Box) -> Rows:
+def rows(layout: Layout, n: int, box: Box) -> CaseRows:
     """The linear conditions on (s, s alpha, s beta, s alpha beta) of every spring: unknowns 4 s .. 4 s + 3."""
     one = Fraction(1)
     block: dict[tuple[int, int], Row] = {(u, v): {} for u in range(1, n + 1) for v in range(u + 1, n + 1)}
@@ -95,7 +95,7 @@ def rows(layout: Layout, n: int, box: Box) -> Rows:
             third, fourth, (low, high) = other
             if low >= 0 or high <= 0:
                 _cone(third, fourth, lower, upper, 1 if low >= 0 else -1, positive, least)
-    return Rows(zero, positive, least)
+    return CaseRows(zero, positive, least)
 
 
 def _cone(x: int, y: int, lower: float, upper: float, sign: int, positive: list[Row], least: list[Row]) -> None:
@@ -115,7 +115,7 @@ def _minus(a: Row, b: Row) -> Row:
 def verify(layout: Layout, n: int, proof: Proof, box: Box | None = None) -> bool:
     """Whether a proof holds, in exact arithmetic and from the layout alone."""
     box = start(layout) if box is None else box
-    if isinstance(proof, Split):
+    if isinstance(proof, CaseSplit):
         lower, upper = box[proof.spring][proof.which]
         if not lower < proof.at < upper:
             return False
@@ -157,7 +157,7 @@ def prove(layout: Layout, n: int, cases: int = 2000) -> Proof | None:
                 if pair[which] == FREE:
                     below = case(_with(box, spring, which, (-inf, 0.0)))
                     above = None if below is None else case(_with(box, spring, which, (0.0, inf)))
-                    return None if below is None or above is None else Split(spring, which, 0.0, below, above)
+                    return None if below is None or above is None else CaseSplit(spring, which, 0.0, below, above)
         return None
 
     return case(start(layout))

@@ -218,7 +218,7 @@ class Equations:
 
     def solve(
         self, seed: int = 0, starts: int = STARTS, near: Array | None = None, enough: int = ENOUGH
-    ) -> Solution | None:
+    ) -> Installed | None:
         """Of the solutions found the one that stores least, None when none is found.
 
         Args:
@@ -226,7 +226,7 @@ class Equations:
             enough: solutions to choose from.
         """
         generator = np.random.default_rng(seed)
-        found: list[Solution] = []
+        found: list[Installed] = []
         for number in range(starts):
             x = self.held(near) if number == 0 and near is not None else self.start(generator)
             for weight in WEIGHTS:
@@ -234,14 +234,14 @@ class Equations:
             x = self.newton(x)
             springs = None if x is None else self.installed(x)
             if x is not None and springs is not None:
-                found.append(Solution(self, x, springs))
+                found.append(Installed(self, x, springs))
             if len(found) == enough:
                 break
         return min(found, key=lambda one: one.energy, default=None)
 
 
 @frozen
-class Solution:
+class Installed:
     """Unknowns that satisfy the equations, and the springs that they stand for."""
 
     equations: Equations
@@ -263,7 +263,7 @@ def solve(
     fixed: Fixed | None = None,
     seed: int = 0,
     enough: int = ENOUGH,
-) -> Solution | None:
+) -> Installed | None:
     """Springs of a layout that balance the arm and store little, None when none were found.
 
     Args:

@@ -28,14 +28,14 @@ from ...model.mechanism import Body, Joint, Mechanism
 from ...model.progress import Progress
 from ...model.validate import whole_number
 from .arm import PlanarArm
-from .criteria import Failure, Objective, failures, objections
+from .criteria import Failure, LayoutObjective, failures, objections
 from .design_equations import Angles, SymbolicBlocks, design_equations
 from .exclusion import Layout, Leaf, Proof, prove
-from .installing import Solution, solve
+from .installing import Installed, solve
 
 MAX_LINKS, MAX_SPRINGS = 10, 12
 MAX_LAYOUTS = 500_000  # candidates of one search: beyond it, hours
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
+OBJECTIVES: tuple[LayoutObjective, ...] = get_args(LayoutObjective)
 LENGTH, MASS = 0.2, 1.0  # [m, kg] of every link of the example arm, its mass centre halfway
 
 
@@ -71,7 +71,7 @@ class Feasible:
 
     layout: Layout
     cost: float
-    found: Solution
+    found: Installed
     balance: Balance
     objections: tuple[Failure, ...]
 
@@ -98,7 +98,7 @@ class Feasible:
 
 
 @dataclass(frozen=True)
-class Search:
+class LayoutSearch:
     """What a search found.
 
     Attributes:
@@ -109,7 +109,7 @@ class Search:
     """
 
     n: int
-    objective: Objective
+    objective: LayoutObjective
     pruned: dict[str, list[Layout]]
     proved: tuple[Excluded, ...]
     feasible: tuple[Feasible, ...]
@@ -132,12 +132,12 @@ class Search:
 
 def search(
     n: int,
-    objective: Objective = "springs",
+    objective: LayoutObjective = "springs",
     springs: int | None = None,
     weight: float = 1.0,
     seed: int = 0,
     progress: Progress | None = None,
-) -> Search:
+) -> LayoutSearch:
     """All layouts of least cost that balance arms of n links, the ground included.
 
     Args:
@@ -177,10 +177,10 @@ def search(
             feasible.append(Feasible(layout, cost, found, balance, tuple(objections(layout, n, objective))))
         if feasible:
             break
-    return Search(n, objective, dict(pruned), tuple(proved), tuple(feasible), tuple(left))
+    return LayoutSearch(n, objective, dict(pruned), tuple(proved), tuple(feasible), tuple(left))
 
 
-def candidates(n: int, objective: Objective = "springs", springs: int | None = None, weight: float = 1.0) -> int:
+def candidates(n: int, objective: LayoutObjective = "springs", springs: int | None = None, weight: float = 1.0) -> int:
     """How many layouts a search looks at, at most: it ends with the first cost at which one is feasible.
 
     Raises:
@@ -204,14 +204,18 @@ def candidates(n: int, objective: Objective = "springs", springs: int | None = N
     return sum(int(ways[cell]) for cell in cells)
 
 
-def _by_cost(n: int, objective: Objective, springs: int | None, weight: float) -> Iterator[tuple[float, list[Layout]]]:
+def _by_cost(
+    n: int, objective: LayoutObjective, springs: int | None, weight: float
+) -> Iterator[tuple[float, list[Layout]]]:
     """Layouts of the same cost, the cheapest first, as far as a feasible one is known."""
     repeated = objective == "springs"
     for cost, cells in sorted(_cells(n, objective, springs, weight).items()):
         yield cost, sorted(layout for cell in cells for layout in _layouts(n, *cell, repeated))
 
 
-def _cells(n: int, objective: Objective, springs: int | None, weight: float) -> dict[float, list[tuple[int, int]]]:
+def _cells(
+    n: int, objective: LayoutObjective, springs: int | None, weight: float
+) -> dict[float, list[tuple[int, int]]]:
     """Cost -> the numbers of springs and joints that have it."""
     pairs = n * (n - 1) // 2
     most = springs or (n - 1 if objective == "springs" else pairs)
@@ -225,7 +229,7 @@ def _cells(n: int, objective: Objective, springs: int | None, weight: float) -> 
     return cells
 
 
-def _cost(size: int, joints: int, objective: Objective, weight: float) -> float:
+def _cost(size: int, joints: int, objective: LayoutObjective, weight: float) -> float:
     return {"springs": size, "span": joints, "weighted": size + weight * joints}[objective]
 
 

@@ -27,7 +27,7 @@ from ..options import MethodOptions, Number, option, takes
 from .arm import PlanarArm, obstacles
 from .criteria import failures
 from .exclusion import Layout, prove
-from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
+from .installing import STIFFNESS, A, B, Equations, Fixed, Installed, solve, upward
 from .layouts import Excluded, default_layout, labels, name
 
 STOCK = 200  # choices from stock that are tried
@@ -138,7 +138,7 @@ def _fixed(names: list[str], stiffness: Given, a: Given, b: Given) -> Fixed:
     }
 
 
-def _from_stock(free: Solution, stock: Sequence[float], seed: int, progress: Progress | None) -> Solution | None:
+def _from_stock(free: Installed, stock: Sequence[float], seed: int, progress: Progress | None) -> Installed | None:
     """A solution with every stiffness from a list, near the free one."""
     of = free.equations
     wanted = [one.stiffness for one in free.springs]
@@ -173,7 +173,7 @@ def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> s
     return f"no springs {name(layout)}{given} were found that balance this arm, nor a proof that there are none"
 
 
-def _free(found: Solution, stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
+def _free(found: Installed, stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
     of = found.equations
     names = labels(of.layout)
 

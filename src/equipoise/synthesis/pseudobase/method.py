@@ -17,7 +17,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import Fault, InputError, nearest
 from ...model.mechanism import Mechanism
-from ..arms.moments import NOTHING, Moment, Segment, moments, segments, slide_faults
+from ..arms.moments import MOMENT_ROUNDING, Moment, Segment, moments, segments, slide_faults
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes, vectors
 from ..method import Method
@@ -171,7 +171,7 @@ def _beside(link: Segment, moment: Moment, unit: float, distance: float) -> Arra
     """A point at a distance from the joint's axis, on the side of the moment where it has one."""
     sideways = np.eye(3) - np.outer(link.axis, link.axis)
     direction = sideways @ moment.vector
-    if np.linalg.norm(direction) <= NOTHING * unit:
+    if np.linalg.norm(direction) <= MOMENT_ROUNDING * unit:
         direction = sideways[:, np.argmin(np.abs(link.axis))]
     return distance * direction / np.linalg.norm(direction)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from robots import lee_chen, planar_arm, robot
 
-from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex import least_squares_form
 from equipoise.synthesis.convex.peak import Peak
 from equipoise.synthesis.convex.polish import Parts, residual
 from equipoise.synthesis.convex.semidefinite import least_rms
@@ -20,7 +20,7 @@ CASES = [
 ]
 
 
-def by_cvxpy(compressed: gram.Gram) -> float:
+def by_cvxpy(compressed: least_squares_form.LeastSquaresForm) -> float:
     """The same program in its textbook form, by another solver."""
     problem = compressed.problem
     N = [cp.Variable((7, 7), PSD=True) for _ in problem.pairs]
@@ -44,13 +44,13 @@ def by_cvxpy(compressed: gram.Gram) -> float:
 
 @pytest.mark.parametrize(("mechanism", "options"), CASES)
 def test_bound_agrees_with_another_solver(mechanism, options):
-    compressed = gram.build(Problem.of(mechanism, radius=0.15, **options))
+    compressed = least_squares_form.build(Problem.of(mechanism, radius=0.15, **options))
     assert least_rms(compressed).value == pytest.approx(by_cvxpy(compressed), rel=1e-4, abs=1e-5)
 
 
 @pytest.mark.parametrize(("mechanism", "options"), CASES)
 def test_no_random_design_undercuts_the_bound(mechanism, options):
-    compressed = gram.build(Problem.of(mechanism, radius=0.15, **options))
+    compressed = least_squares_form.build(Problem.of(mechanism, radius=0.15, **options))
     bound = least_rms(compressed).value
     rng = np.random.default_rng(0)
     pair = rng.integers(len(compressed.blocks), size=(2000, 4))
@@ -62,31 +62,33 @@ def test_no_random_design_undercuts_the_bound(mechanism, options):
 
 def test_acceptance_ur5_span_2():
     """THEORY's table says 0.58 % by sampling; the exact average is 0.619 %."""
-    bound = least_rms(gram.build(Problem.of(robot("ur5"), span=2, radius=0.15)))
+    bound = least_rms(least_squares_form.build(Problem.of(robot("ur5"), span=2, radius=0.15)))
     assert 0.005 < bound.value < 0.007
 
 
 def test_the_samples_do_not_change_the_size_of_the_solve():
-    grams = [gram.build(Problem.of(robot("ur5"), span=2, radius=0.15, samples=count)) for count in (1000, 5000)]
-    assert [{columns.shape for columns in found.columns} for found in grams] == [{(28, 28)}] * 2
-    assert [len(found.columns) for found in grams] == [11, 11]
+    forms = [
+        least_squares_form.build(Problem.of(robot("ur5"), span=2, radius=0.15, samples=count)) for count in (1000, 5000)
+    ]
+    assert [{columns.shape for columns in found.columns} for found in forms] == [{(28, 28)}] * 2
+    assert [len(found.columns) for found in forms] == [11, 11]
 
 
 def test_more_pairs_or_larger_regions_never_leave_more():
-    small = gram.build(Problem.of(lee_chen(), span=1, radius=0.1))
+    small = least_squares_form.build(Problem.of(lee_chen(), span=1, radius=0.1))
     assert least_rms(small.enlarged(2.0)).value <= least_rms(small).value + 1e-8
-    large = gram.build(Problem.of(lee_chen(), span=2, radius=0.1))
+    large = least_squares_form.build(Problem.of(lee_chen(), span=2, radius=0.1))
     assert least_rms(large).value <= least_rms(small).value + 1e-8
 
 
 def test_enlarged_is_the_problem_with_larger_regions():
     problem = Problem.of(lee_chen(), span=1, radius=0.1)
-    direct = least_rms(gram.build(problem.enlarged(3.0))).value
-    assert least_rms(gram.build(problem).enlarged(3.0)).value == pytest.approx(direct, abs=1e-7)
+    direct = least_rms(least_squares_form.build(problem.enlarged(3.0))).value
+    assert least_rms(least_squares_form.build(problem).enlarged(3.0)).value == pytest.approx(direct, abs=1e-7)
 
 
 def test_peak_bound_holds_for_random_designs_and_is_reached():
-    compressed = gram.build(Problem.of(lee_chen(), span=1, radius=0.15, samples=500, objective="peak"))
+    compressed = least_squares_form.build(Problem.of(lee_chen(), span=1, radius=0.15, samples=500, objective="peak"))
     peak = Peak.of(compressed)
     bound = peak.bound().value
     rng = np.random.default_rng(0)

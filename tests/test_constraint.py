@@ -9,7 +9,7 @@ import zoo
 from robots import lee_chen_springs, robot
 
 import equipoise as eq
-from equipoise.clearance import Room, clearance
+from equipoise.clearance import ClearanceConstraint, clearance
 from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.model.mechanism import Capsule
@@ -34,7 +34,7 @@ def test_derivative_by_differences():
         )
     )
     m = replace(m, capsules=(Capsule("upper arm", "upper_arm_link", (0, 0, 0), (0, 0, 0.4), 0.06),))
-    room, p, h = Room(m, sample(Tree.of(m), 200), 0.05), ends(m), 1e-6
+    room, p, h = ClearanceConstraint(m, sample(Tree.of(m), 200), 0.05), ends(m), 1e-6
     rows, J = room(p)
     assert len(rows) > 20
     for i in np.ndindex(p.shape):
@@ -48,8 +48,8 @@ def test_derivative_by_differences():
 def test_no_rows_where_there_is_room():
     m = near_post(0.1)
     q = sample(Tree.of(m), 50)
-    assert len(Room(m, q, 0.05)(ends(m))[0]) == 0
-    assert len(Room(m, q, 0.09)(ends(m))[0]) > 0
+    assert len(ClearanceConstraint(m, q, 0.05)(ends(m))[0]) == 0
+    assert len(ClearanceConstraint(m, q, 0.09)(ends(m))[0]) > 0
 
 
 def test_a_spring_steps_aside_and_balances_as_before():

@@ -10,7 +10,7 @@ from spring_sets import some_springs, torque_of, with_parts
 import equipoise as eq
 from equipoise.energy import Potential
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex import least_squares_form
 from equipoise.synthesis.convex.polish import residual
 from equipoise.synthesis.problem import Problem, Region
 
@@ -29,7 +29,7 @@ def slides() -> eq.Mechanism:
 @pytest.mark.parametrize("mechanism", [robot("ur5"), robot("xarm7"), slides(), lee_chen()], ids=lambda m: m.name)
 def test_samples_give_the_mean_square_torque_of_real_springs(mechanism):
     problem = Problem.of(mechanism, span=2, radius=0.2, samples=300)
-    compressed = gram.build(problem)
+    compressed = least_squares_form.build(problem)
     springs = some_springs(problem)
     q = sample(Tree.of(mechanism), 300, 0)
     expected = np.sqrt((torque_of(problem, springs, q) ** 2).sum(axis=1).mean())
@@ -40,7 +40,7 @@ def test_samples_give_the_mean_square_torque_of_real_springs(mechanism):
 @pytest.mark.parametrize("mechanism", [robot("ur5"), lee_chen()], ids=lambda m: m.name)
 def test_exact_averages_are_the_limit_of_samples(mechanism):
     problem = Problem.of(mechanism, span=2, radius=0.2)
-    exact = gram.build(problem)
+    exact = least_squares_form.build(problem)
     assert exact.averaged
     springs = some_springs(problem)
     value = np.hypot(np.linalg.norm(residual(exact, springs)), exact.rest) * exact.unbalanced
@@ -54,7 +54,7 @@ def test_exact_averages_are_the_limit_of_samples(mechanism):
 
 def test_mean_stored_energy_is_that_of_the_springs():
     problem = Problem.of(lee_chen(), span=3, radius=0.2)
-    averaged, sampled = gram.build(problem), gram.build(replace(problem, samples=20_000))
+    averaged, sampled = least_squares_form.build(problem), least_squares_form.build(replace(problem, samples=20_000))
     springs = some_springs(problem)
     q = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 3))
     expected = Potential(with_parts(problem, springs))(q).springs.sum(axis=1).mean()
@@ -63,11 +63,11 @@ def test_mean_stored_energy_is_that_of_the_springs():
 
 
 def test_limited_joints_and_slides_are_sampled_whole_turns_are_not():
-    assert gram.build(Problem.of(robot("ur5"), span=1)).averaged  # +-360 deg and +-180 deg
-    assert not gram.build(Problem.of(slides(), span=1)).averaged
+    assert least_squares_form.build(Problem.of(robot("ur5"), span=1)).averaged  # +-360 deg and +-180 deg
+    assert not least_squares_form.build(Problem.of(slides(), span=1)).averaged
     limited = planar_arm([1, 1], [0.3, 0.3], [0.1, 0.1])
     limited = replace(limited, joints=tuple(replace(j, range=(-1.0, 1.0)) for j in limited.joints))
-    assert not gram.build(Problem.of(limited, span=1)).averaged
+    assert not least_squares_form.build(Problem.of(limited, span=1)).averaged
 
 
 def test_a_spring_between_the_ground_and_a_vertical_axis_is_recognised_as_useless():
@@ -80,7 +80,7 @@ def test_a_spring_between_the_ground_and_a_vertical_axis_is_recognised_as_useles
         ),
     )
     problem = Problem(spun, (("table", "arm"),), {"table": Region.ball(0.1), "arm": Region.ball(0.1)})
-    assert gram.build(problem).useful == [0]
+    assert least_squares_form.build(problem).useful == [0]
     fixed = eq.Mechanism("post", (eq.Body("post", 1.0),), (eq.Joint("weld", "fixed", "world", "post"),))
     problem = Problem(fixed, (("world", "post"),), {"world": Region.ball(0.1), "post": Region.ball(0.1)})
-    assert gram.build(problem).useful == []
+    assert least_squares_form.build(problem).useful == []

@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.energy.evaluate import Potential
 from equipoise.hardware import Envelope, ExtensionSpring, Options, realisations
 from equipoise.hardware.realise.bill import bill
-from equipoise.hardware.realise.installed import Torques, leaves
+from equipoise.hardware.realise.installed import Torques, installed_torque
 from equipoise.hardware.realise.realisations import KINDS
 from equipoise.hardware.realise.stretch import Pulley, Straight, beyond
 from equipoise.kinematics import Tree, sample
@@ -85,21 +85,21 @@ def test_torque_over_a_pulley_is_the_derivative_of_its_energy() -> None:
 
 @pytest.mark.parametrize("share", [1 / 8, 1 / 4])
 def test_free_length_that_is_left_is_its_share_of_the_longer_distance(share: float) -> None:
-    left = leaves(pendulum(), [Straight(share * 0.2)])
+    left = installed_torque(pendulum(), [Straight(share * 0.2)])
     assert left.share == pytest.approx(share, rel=1e-4)
     assert left.share == pytest.approx(eq.check(pendulum(free=share * 0.2)).relative, rel=1e-4)
 
 
 def test_pulley_error_is_of_first_order_in_the_radius() -> None:
     m, radii = pendulum(), (4e-3, 2e-3, 1e-3, 5e-4)
-    shares = [leaves(m, [Pulley(r, (0.0, 0.0, -1.0))]).share for r in radii]
+    shares = [installed_torque(m, [Pulley(r, (0.0, 0.0, -1.0))]).share for r in radii]
     for coarse, fine in pairwise(shares):
         assert coarse / fine == pytest.approx(2, rel=0.1)
 
 
 def test_friction_is_a_share_of_the_springs_torque() -> None:
     m = pendulum()
-    left = leaves(m, [Straight()], [0.05])
+    left = installed_torque(m, [Straight()], [0.05])
     assert left.residual[0] < 1e-12
     assert left.friction[0] == pytest.approx(0.05 * 5.886, rel=1e-6)
 
@@ -118,7 +118,7 @@ def test_which_realisations_work() -> None:
     assert isinstance(law, Pulley)
     assert pulley.share is not None
     assert 0 < pulley.share < 0.2
-    rms = [leaves(pendulum(), [replace(law, preload=law.preload + x)]).rms[0] for x in (-1e-3, 0, 1e-3)]
+    rms = [installed_torque(pendulum(), [replace(law, preload=law.preload + x)]).rms[0] for x in (-1e-3, 0, 1e-3)]
     assert rms[1] == min(rms)
     assert "closed length" in ways["direct"].reason
 

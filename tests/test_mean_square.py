@@ -10,7 +10,7 @@ from robots import robot
 from spring_sets import some_springs, torque_of
 
 from equipoise.kinematics import Tree, sample
-from equipoise.synthesis.convex import least_squares_form as gram
+from equipoise.synthesis.convex import least_squares_form
 from equipoise.synthesis.convex.mean_square import Quadratic, mean_square
 from equipoise.synthesis.convex.polish import Parts
 from equipoise.synthesis.problem import Problem
@@ -24,7 +24,7 @@ def batch(problem: Problem, count: int) -> Parts:
 @pytest.mark.parametrize("name", ["ur5", "panda"])
 def test_value_is_the_mean_square_torque_of_real_springs(name: str) -> None:
     problem = Problem.of(robot(name), span=2, radius=0.2, samples=200)
-    compressed = gram.build(problem)
+    compressed = least_squares_form.build(problem)
     q = sample(Tree.of(problem.mechanism), 200, 0)
     springs = batch(problem, 3)
     value, _, _ = mean_square(compressed, springs)
@@ -35,7 +35,7 @@ def test_value_is_the_mean_square_torque_of_real_springs(name: str) -> None:
 
 
 def test_gradients_are_those_of_finite_differences() -> None:
-    compressed = gram.build(Problem.of(robot("ur5"), span=2, radius=0.2))
+    compressed = least_squares_form.build(Problem.of(robot("ur5"), span=2, radius=0.2))
     springs = batch(compressed.problem, 4)
     _, by_k, by_u = mean_square(compressed, springs)
     for name, gradient, h in (("k", by_k, 1e-2), ("u", by_u, 1e-5)):
@@ -51,7 +51,7 @@ def test_gradients_are_those_of_finite_differences() -> None:
 
 
 def test_quadratic_form_and_its_gradient() -> None:
-    compressed = gram.build(Problem.of(robot("ur5"), span=2, radius=0.2))
+    compressed = least_squares_form.build(Problem.of(robot("ur5"), span=2, radius=0.2))
     one = some_springs(compressed.problem)
     form = Quadratic.of(compressed, one)
     k = np.random.default_rng(0).uniform(10, 500, (20, one.k.shape[1]))
