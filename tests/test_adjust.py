@@ -13,7 +13,7 @@ from robots import lee_chen_springs
 import equipoise as eq
 from equipoise.model.errors import InputError
 from equipoise.robust import adjust
-from equipoise.synthesis.payload import Payload
+from equipoise.model.payload import Payload
 
 
 def pendulum(low=0.0, high=2.0):

@@ -21,9 +21,11 @@ from .energy.reference import State
 from .kinematics import Linkage, Mobility, Tree, sample
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
+from .model.elements import Element
 from .model.errors import InputError, NoFourierForm
 from .model.mechanism import Mechanism
 from .model.notebook import Shown
+from .model.payload import Payload
 from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
@@ -242,6 +244,12 @@ def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[Four
         return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
     except NoFourierForm as why:
         return None, str(why)
+
+
+def payload_residual(payload: Payload, mechanism: Mechanism, springs: Sequence[Element]) -> dict[str, float]:
+    """Peak residual torque of each coordinate [N m or N] that springs leave at either end of a range of payload."""
+    low, high = (check(payload.on(mechanism, mass).with_springs(springs)) for mass in (payload.low, payload.high))
+    return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
 
 def largest_share(residual: Array, unbalanced: Array, coordinates: Sequence[Coordinate]) -> float:

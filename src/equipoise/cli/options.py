@@ -13,7 +13,7 @@ from . import terminal
 
 if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
-    from ..synthesis.payload import Payload
+    from ..model.payload import Payload
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -41,7 +41,7 @@ def payload(mechanism: Mechanism, masses: str, body: str, place: str) -> Payload
     Raises:
         InputError: not two masses, not three lengths, or no such body.
     """
-    from ..synthesis.payload import Payload
+    from ..model.payload import Payload
 
     bounds = [quantity(text, "mass", "--payload") for text in masses.split(",")]
     point = [length(text, "--payload-at") for text in place.split(",")]

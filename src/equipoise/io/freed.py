@@ -10,7 +10,7 @@ import numpy as np
 from ..model.arrays import Array, vec3
 from ..model.elements import Vec3
 from ..model.mechanism import WORLD, Body, Joint, JointType, Mechanism
-from .text import Names
+from ..model.names import Names
 
 X, Y, Z = np.eye(3)
 STEPS: Mapping[str, tuple[JointType, ...]] = {

@@ -29,10 +29,11 @@ import numpy as np
 from ..model.elements import Vec3
 from ..model.errors import UnsupportedError
 from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
+from ..model.names import Names
 from ..model.rotation import about, from_rpy, to_quaternion
 from .inertials import Inertials
 from .replicas import Replicas, replicas
-from .text import Names, numbers
+from .text import numbers
 
 HINGE_ARM = 0.1
 """Between the two points that hold a hinge loop [m]."""

@@ -16,10 +16,10 @@ import numpy as np
 from ..model.arrays import Array, frozen, vec3
 from ..model.elements import Element, Spring, TorsionSpring, Vec3
 from ..model.mechanism import Coupling, Loop
+from ..model.names import Names
 from ..model.rotation import from_quaternion
 from .mjcf import HINGE_ARM
 from .mjcf_acts import Model
-from .text import Names
 
 Places = dict[int, tuple[str, Array]]
 """A body of the engine: which body of ours has its frame, and where its origin is there (a point mass has none)."""

@@ -32,6 +32,7 @@ import numpy as np
 from ..model.arrays import Array, vec3
 from ..model.errors import Fault, InputError
 from ..model.mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
+from ..model.names import Names
 from ..model.rotation import about, from_quaternion, to_rpy
 from ..model.validate import LARGEST_COUNTS
 from . import files, freed
@@ -40,7 +41,6 @@ from .mjcf_between import Between, Places
 from .mjcf_compile import compiled
 from .mjcf_pose import assembly, independent, joint_values
 from .notes import Notes
-from .text import Names
 from .xmltree import lines
 
 MASSLESS = 1e-12  # [kg] what the compiler is told to put in the place of nothing

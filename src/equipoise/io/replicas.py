@@ -11,8 +11,8 @@ from ..model.arrays import frozen
 from ..model.elements import Vec3
 from ..model.errors import UnsupportedError
 from ..model.mechanism import WORLD, Joint, Mechanism
+from ..model.names import Names
 from ..model.rotation import from_rpy
-from .text import Names
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What the writers of XML share: numbers at full precision, and names used once."""
+"""Numbers as the writers of XML put them down: at full precision."""
 
 from __future__ import annotations
 
@@ -8,19 +8,3 @@ from collections.abc import Iterable
 def numbers(values: Iterable[float]) -> str:
     """The values with a space between, each the shortest text that reads back as the same number."""
     return " ".join(repr(float(value)).removesuffix(".0") for value in values)
-
-
-class Names:
-    """The names one kind of element has already used."""
-
-    def __init__(self, used: Iterable[str] = ()) -> None:
-        self._used = set(used)
-
-    def new(self, wanted: str) -> str:
-        """The wanted name, with a number behind it when it is taken."""
-        name, count = wanted, 1
-        while name in self._used:
-            count += 1
-            name = f"{wanted}_{count}"
-        self._used.add(name)
-        return name

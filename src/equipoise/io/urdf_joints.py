@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..model.mechanism import WORLD, Body, Coupling, Joint
+from ..model.names import Names
 from . import freed
 from .notes import Notes
-from .text import Names
 from .urdf_known import label
 from .xmltree import XmlElement
 

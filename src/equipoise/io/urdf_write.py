@@ -9,7 +9,8 @@ from xml.etree import ElementTree as ET
 
 from ..model.errors import EquipoiseWarning, UnsupportedError
 from ..model.mechanism import WORLD, Body, Joint, Mechanism
-from .text import Names, numbers
+from ..model.names import Names
+from .text import numbers
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")

@@ -112,6 +112,35 @@ def share(value: object, *field: str | int, most: float = 1.0) -> float:
     return number
 
 
+def number(option: str, value: Any, positive: bool | None) -> float:
+    """The value, when it is a finite number more than 0, at least 0, or with None of either sign but not 0.
+
+    Raises:
+        InputError: it is not.
+    """
+    limit = {True: "number of more than 0", False: "number of at least 0", None: "number other than 0"}[positive]
+    allowed = isinstance(value, (int, float)) and math.isfinite(value)
+    allowed = allowed and {True: value > 0, False: value >= 0, None: value != 0}[positive]
+    if not allowed:
+        raise InputError(Fault((option,), f"must be a finite {limit}, found {value}"))
+    return float(value)
+
+
+def point(value: Any, *field: str | int) -> tuple[float, float, float]:
+    """Three finite lengths [m].
+
+    Raises:
+        InputError: they are not; the message names the field.
+    """
+    try:
+        x, y, z = (float(length) for length in value)
+    except (TypeError, ValueError):
+        x = y = z = math.nan
+    if not all(map(math.isfinite, (x, y, z))):
+        raise InputError(Fault(field, f"must be three lengths x,y,z [m] in its frame, found {value}"))
+    return x, y, z
+
+
 def _parse(text: str, unit: str, expected: str) -> float:
     text = text.strip()
     match = _NUMBER.match(text) if len(text) <= LONGEST else None

@@ -14,7 +14,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ..balance import Balance, check
+from ..balance import Balance, check, payload_residual
 from ..energy.evaluate import Potential
 from ..energy.extremes import climb
 from ..kinematics import Tree, sample
@@ -22,9 +22,9 @@ from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from ..model.payload import Payload
 from ..model.progress import Progress, silent
 from ..synthesis.mounts import Mounts
-from ..synthesis.payload import Payload
 from .moves import Handle, Move, Way, What, moved, sets, value
 from .scatter import Scatter
 from .torque_map import TorqueMap
@@ -120,7 +120,7 @@ def adjust(
     report("judging the adjusted design", len(handles) / (len(handles) + 2))
     ends = (check(payload.on(best.low, payload.low)), check(payload.on(best.high, payload.high)))
     fixed = problem.settled(chosen, payload.middle)
-    left = payload.residual(fixed, fixed.springs)
+    left = payload_residual(payload, fixed, fixed.springs)
     return Adjustment(
         payload=payload,
         tolerance=tolerance,

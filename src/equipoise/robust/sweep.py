@@ -9,8 +9,8 @@ import numpy as np
 
 from ..balance import Balance, check
 from ..model.mechanism import Mechanism
+from ..model.payload import Payload
 from ..model.validate import whole_number
-from ..synthesis.payload import Payload
 
 
 @dataclass(frozen=True)

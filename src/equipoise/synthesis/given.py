@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite, sqrt
-from typing import Any
+from math import sqrt
 
 import numpy as np
 
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError, nearest
+from ..model.units import number, point
 from .options import Number
 
 Value = Number | Sequence[Number]
@@ -22,27 +22,11 @@ def numbers(option: str, given: Given, names: Sequence[str], positive: bool | No
     return {name: number(option, value, positive) for name, value in _each(option, given, names).items()}
 
 
-def number(option: str, value: Any, positive: bool | None) -> float:
-    """The value, when it is a finite number more than 0, at least 0, or with None of either sign but not 0.
-
-    Raises:
-        InputError: it is not.
-    """
-    limit = {True: "number of more than 0", False: "number of at least 0", None: "number other than 0"}[positive]
-    allowed = isinstance(value, (int, float)) and isfinite(value)
-    allowed = allowed and {True: value > 0, False: value >= 0, None: value != 0}[positive]
-    if not allowed:
-        raise InputError(Fault((option,), f"must be a finite {limit}, found {value}"))
-    return float(value)
-
-
 def vectors(option: str, given: Given, names: Sequence[str]) -> dict[str, Array]:
     """The point (3,) [m] for each link that has one."""
     found = {}
     for name, value in _each(option, given, names).items():
-        if isinstance(value, (int, float)) or len(value) != 3 or not np.isfinite(point := np.array(value, float)).all():
-            raise InputError(Fault((option, name), f"must be three lengths x,y,z [m] in its frame, found {value}"))
-        found[name] = point
+        found[name] = np.array(point(value, option, name))
     return found
 
 

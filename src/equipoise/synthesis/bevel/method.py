@@ -17,13 +17,15 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 
-from ...io.text import Names
+from ...balance import payload_residual
 from ...kinematics import Tree
 from ...kinematics.sampling import bounds
 from ...model.arrays import Array
 from ...model.elements import Spring, Vec3
 from ...model.errors import Fault, InfeasibleError, InputError
 from ...model.mechanism import Body, Coupling, Joint, Mechanism
+from ...model.names import Names
+from ...model.payload import Payload
 from ..arms.shoulder import Shoulder, find
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes
@@ -31,7 +33,6 @@ from ..margin import torque_margin
 from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, Number, option, takes
-from ..payload import Payload
 from .differential import ARRANGEMENTS, SIDES, differential
 
 NODES = 64  # of the quadrature over each joint's range
@@ -101,7 +102,8 @@ def design(mechanism: Mechanism, options: BevelOptions) -> Design:
     masses = dict.fromkeys(SIDES, 0.0) | numbers("disk_mass", options.disk_mass, SIDES, positive=False)
     J = differential(arrangement, ratio)
     geared, disks = _with_disks(bare, first, J, masses, width)
-    carried = Payload.of(first, payload, options.payload_at)
+    place = _centre(first) if options.payload_at is None else options.payload_at
+    carried = Payload.at(geared, (0.0,) if payload is None else payload, first.pitch.name, place)
     loaded = carried.on(geared, carried.middle)
     s = _shoulder(loaded)
 
@@ -137,7 +139,7 @@ def design(mechanism: Mechanism, options: BevelOptions) -> Design:
         free |= {"payload": carried.span, "payload_at": carried.place.tolist()}
         free["payload_rule"] = _payload_rule(geared, carried, s, free["b"], free["h"])
         if carried.high > carried.low:
-            free["payload_residual"] = carried.residual(geared, made.springs)
+            free["payload_residual"] = payload_residual(carried, geared, made.springs)
     if ratio != 1:
         free["approximate"] = (
             f"springs give terms in {ratio:g} roll +- pitch, gravity has roll +- pitch: exact with a gear ratio of 1 "
@@ -172,6 +174,13 @@ def _shoulder(mechanism: Mechanism) -> Shoulder:
     if found is None:
         raise InputError(Fault(("payload",), f"leaves no shoulder to balance: {'; '.join(reasons)}"))
     return found
+
+
+def _centre(shoulder: Shoulder) -> Array:
+    """(3,) [m] the mass centre of the pitch link, in its frame."""
+    link = shoulder.pitch
+    own = sum(m for m, _ in link.lumps)
+    return link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)
 
 
 def _within(mechanism: Mechanism, ranges: dict[str, tuple[float, float]]) -> Mechanism:

@@ -17,12 +17,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...io.text import Names
 from ...kinematics import Tree
 from ...kinematics.sampling import sample
 from ...model.arrays import Array, frozen
 from ...model.elements import Spring, Vec3
 from ...model.mechanism import Body, Joint, Loop, Mechanism
+from ...model.names import Names
 from ...model.rotation import to_rpy
 from ..arms.moments import Lump, Moment, Segment, upwards
 

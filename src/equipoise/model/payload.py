@@ -11,15 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..balance import check
-from ..io.text import Names
-from ..model.arrays import Array, frozen
-from ..model.elements import Element
-from ..model.errors import Fault, InputError, nearest
-from ..model.mechanism import Mechanism, PointMass
-from .arms.shoulder import Shoulder
-from .given import number, vectors
-from .options import Number
+from .arrays import Array, frozen
+from .errors import Fault, InputError, nearest
+from .mechanism import Mechanism, PointMass
+from .names import Names
+from .units import number, point
 
 
 @frozen
@@ -32,22 +28,6 @@ class Payload:
     place: Array
 
     @staticmethod
-    def of(shoulder: Shoulder, masses: Sequence[Number] | None, place: Sequence[Number] | None) -> Payload:
-        """One mass or a range, at a point of the pitch link or at its mass centre.
-
-        Raises:
-            InputError: not one or two masses, or not a point.
-        """
-        link = shoulder.pitch
-        if place is None:
-            own = sum(m for m, _ in link.lumps)
-            at = link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)
-        else:
-            at = vectors("payload_at", {link.name: place}, [link.name])[link.name]
-        low, high = _range((0.0,) if masses is None else masses)
-        return Payload(link.name, low, high, at)
-
-    @staticmethod
     def at(mechanism: Mechanism, masses: Sequence[float], body: str, place: Sequence[float] = (0, 0, 0)) -> Payload:
         """One mass or a range [kg] at a point [m] of any body that moves.
 
@@ -58,7 +38,7 @@ class Payload:
             problem = f"there is no body {nearest(body, mechanism.body_names)}"
             raise InputError(Fault(("payload_on",), problem, mechanism.body_names))
         low, high = _range(masses)
-        return Payload(body, low, high, vectors("payload_at", {body: place}, [body])[body])
+        return Payload(body, low, high, np.array(point(place, "payload_at", body)))
 
     @property
     def middle(self) -> float:
@@ -78,13 +58,8 @@ class Payload:
         name = Names(point.name for point in mechanism.masses).new("payload")
         return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
 
-    def residual(self, mechanism: Mechanism, springs: Sequence[Element]) -> dict[str, float]:
-        """Peak residual torque of each coordinate [N m] that springs leave at either end of the range."""
-        low, high = (check(self.on(mechanism, mass).with_springs(springs)) for mass in (self.low, self.high))
-        return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
-
-def _range(masses: Sequence[Number]) -> tuple[float, float]:
+def _range(masses: Sequence[float]) -> tuple[float, float]:
     if len(masses) not in (1, 2):
         raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
     low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
