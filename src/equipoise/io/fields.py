@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, ValidationInfo
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo
 
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import JOINT_TYPES, MOVING, SINGLE, JointType
 from ..model.units import SI_UNITS, quantity, to_si
+
+
+class Item(BaseModel):
+    """A mapping of the file. `noun` is what a message calls it."""
+
+    model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
+    noun: ClassVar[str]
+
+    def values(self) -> dict[str, Any]:
+        """The fields by name, as the dataclass of the same kind takes them."""
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
 
 DIMENSION_OF = {"revolute": "angle", "prismatic": "length"}
 """What the coordinate of a joint measures."""

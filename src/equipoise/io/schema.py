@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo, field_validator
 
-from ..model.elements import KINDS, Element, Spring, TorsionSpring
 from ..model.errors import COUNTED, Fault, InputError, Path, nearest
 from ..model.mechanism import SINGLE
 from .fields import (
@@ -21,13 +20,12 @@ from .fields import (
     Direction,
     Gravity,
     Inertias,
+    Item,
     Length,
     Mass,
     Number,
     Point,
-    Stiffness,
     Text,
-    TorsionalStiffness,
     Type,
     held,
     limits,
@@ -35,6 +33,7 @@ from .fields import (
     show,
     whole,
 )  # fmt: skip
+from .spring_items import of_kind, spring_model
 
 SCHEMA = 1
 
@@ -43,17 +42,6 @@ def _schema(value: object) -> int:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value == SCHEMA:
         return SCHEMA
     raise InputError(f"this version reads schema {SCHEMA}, found {show(value)}")
-
-
-class Item(BaseModel):
-    """A mapping of the file. `noun` is what a message calls it."""
-
-    model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
-    noun: ClassVar[str]
-
-    def values(self) -> dict[str, Any]:
-        """The fields by name, as the dataclass of the same kind takes them."""
-        return {name: getattr(self, name) for name in type(self).model_fields}
 
 
 class BodyItem(Item):
@@ -107,69 +95,6 @@ class LoopItem(Item):
     axis_b: Direction | None = None
 
 
-def _of_kind(value: object) -> object:
-    """An entry of `springs` as the model of its kind; what is wrong inside keeps its own place."""
-    return _spring_model(value).model_validate(value) if isinstance(value, dict) else SpringItem.model_validate(value)
-
-
-def _spring_model(value: object) -> type[Item]:
-    kind = value.get("kind", Spring.kind) if isinstance(value, dict) else Spring.kind
-    return SPRINGS.get(kind, OtherSpring) if isinstance(kind, str) else OtherSpring
-
-
-Kind = Annotated[str, one_of("kind of spring", tuple(KINDS))]
-
-
-class OtherSpring(Item):
-    """Of a kind that does not exist: that is the fault."""
-
-    model_config = ConfigDict(extra="ignore")
-    noun = "a spring"
-    kind: Kind
-
-
-class SpringItem(Item):
-    noun = "a spring"
-    name: Text
-    kind: Kind = Spring.kind
-    body_a: Text
-    p_a: Point
-    body_b: Text
-    p_b: Point
-    stiffness: Stiffness
-    free_length: Length = 0.0
-    mass: Mass = 0.0
-    mass_split: Number = 0.5
-    diameter: Length = 0.0
-
-    def element(self) -> Element:
-        return Spring(**{key: value for key, value in self.values().items() if key != "kind"})
-
-
-class TorsionItem(Item):
-    noun = "a torsion spring"
-    name: Text
-    kind: Kind
-    joint: Text | None = None
-    joints: dict[str, Number] = Field(default={}, validate_default=True)
-    stiffness: TorsionalStiffness
-    rest: Angle = 0.0
-
-    @field_validator("joints")
-    @classmethod
-    def _either(cls, value: dict[str, float], info: ValidationInfo) -> dict[str, float]:
-        if ("joint" in info.data and info.data["joint"] is None) == (not value):
-            raise InputError("give 'joint', or 'joints' with a ratio each, and not both")
-        return value
-
-    def element(self) -> Element:
-        joints = self.joints or {str(self.joint): 1.0}
-        return TorsionSpring(self.name, tuple(joints.items()), self.stiffness, self.rest)
-
-
-SPRINGS: dict[str, type[Item]] = {Spring.kind: SpringItem, TorsionSpring.kind: TorsionItem}
-
-
 class MassItem(Item):
     noun = "a mass"
     name: Text
@@ -217,18 +142,18 @@ class MechanismFile(Item):
     name: Text
     gravity: Gravity = (0.0, 0.0, -9.81)
     model: Text | None = None
-    bodies: list[BodyItem] = []
-    joints: list[JointItem] = []
+    bodies: list[BodyItem] = Field(default_factory=list)
+    joints: list[JointItem] = Field(default_factory=list)
     dh: DhTable | None = None
-    couplings: list[CouplingItem] = []
-    loops: list[LoopItem] = []
-    independent: list[Text] = []
-    assembly: dict[str, Any] = {}  # angles or lengths: their joints tell
-    springs: list[Annotated[Any, BeforeValidator(_of_kind)]] = []
-    masses: list[MassItem] = []
-    capsules: list[CapsuleItem] = []
+    couplings: list[CouplingItem] = Field(default_factory=list)
+    loops: list[LoopItem] = Field(default_factory=list)
+    independent: list[Text] = Field(default_factory=list)
+    assembly: dict[str, Any] = Field(default_factory=dict)  # angles or lengths: their joints tell
+    springs: list[Annotated[Any, BeforeValidator(of_kind)]] = Field(default_factory=list)
+    masses: list[MassItem] = Field(default_factory=list)
+    capsules: list[CapsuleItem] = Field(default_factory=list)
     workspace: WorkspaceItem = WorkspaceItem()
-    provenance: dict[str, Any] = {}
+    provenance: dict[str, Any] = Field(default_factory=dict)
 
 
 _ITEMS: dict[str, type[Item]] = {
@@ -236,7 +161,6 @@ _ITEMS: dict[str, type[Item]] = {
     "joints": JointItem,
     "couplings": CouplingItem,
     "loops": LoopItem,
-    "springs": SpringItem,
     "masses": MassItem,
     "capsules": CapsuleItem,
     "workspace": WorkspaceItem,
@@ -295,7 +219,7 @@ def _model(path: Path, data: Any) -> type[Item]:
         return MechanismFile
     section, *inside = path
     if section == "springs" and inside:
-        return _spring_model(data["springs"][inside[0]])
+        return spring_model(data["springs"][inside[0]])
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 
