@@ -11,6 +11,7 @@ from ..arrays import Array, frozen
 from ..energy.peak import climb
 from ..energy.potential import Potential
 from ..errors import InputError
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..validate import MAX_SAMPLES, whole_number
@@ -59,12 +60,13 @@ class Clearance:
         }
 
 
-def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0) -> Clearance:
-    """Judge the room around the springs: random poses, then a climb from the closest of them.
+def clearance(mechanism: Source, *, samples: int | None = None, seed: int = 0) -> Clearance:
+    """Judge the room around the springs of a mechanism or a file: random poses, then a climb from the closest of them.
 
     Raises:
-        InputError: no springs, or loops that cannot be closed.
+        InputError: no springs, or loops that cannot be closed; or as `load`.
     """
+    mechanism = loaded(mechanism)
     if not mechanism.springs:
         raise InputError(f"mechanism '{mechanism.name}' has no springs")
     tree = Tree.of(mechanism)

@@ -20,6 +20,7 @@ from ..errors import Fault, InputError, UnsupportedError
 from ..kinematics import Poses, Tree, sample
 from ..mechanism import Mechanism
 from ..spring import Spring
+from ..units import QuantityField
 
 RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
@@ -46,7 +47,7 @@ class Travel:
 
     low: float = 0.25
     high: float = 4.0
-    reach: float = np.inf
+    reach: QuantityField = QuantityField("length", np.inf)
 
     def __post_init__(self) -> None:
         if not 0 < self.low <= 1 <= self.high < np.inf:

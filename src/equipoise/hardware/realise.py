@@ -57,8 +57,8 @@ class Options:
     wires: tuple[Wire, ...] = (WIRES["DH"],)
     limits: Limits = field(default_factory=Limits)
     envelope: Envelope = field(default_factory=Envelope)
-    pulley: float = 10 * MM
-    ends: float = 10 * MM
+    pulley: QuantityField = QuantityField("length", 10 * MM)
+    ends: QuantityField = QuantityField("length", 10 * MM)
     most: int = 8
     friction: Mapping[str, float] = field(default_factory=lambda: dict(FRICTION))
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import Fault, InputError
+from ..units import QuantityField
 from .compression import CompressionSpring, least_free_length
 from .extension import LOOP, ExtensionSpring
 from .helical import Helical, coils_for
@@ -55,8 +56,8 @@ class Need:
 class Envelope:
     """The room for each spring: greatest outer diameter and greatest length in use [m]."""
 
-    outer: float = inf
-    length: float = inf
+    outer: QuantityField = QuantityField("length", inf)
+    length: QuantityField = QuantityField("length", inf)
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,13 @@ from ..balance import Balance, check
 from ..energy.peak import climb
 from ..energy.potential import Potential
 from ..errors import InputError
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
+from ..units import Quantity, share
 from .moves import Handle, Move, Way, What, moved, sets, value
 from .scatter import Scatter
 from .torque_map import TorqueMap
@@ -83,21 +85,23 @@ class Adjustment:
 
 
 def adjust(
-    mechanism: Mechanism,
+    mechanism: Source,
     payload: Payload,
     *,
-    tolerance: float = KEPT,
+    tolerance: Quantity = KEPT,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Adjustment:
     """Find what to move, from the springs of a design that is balanced at any payload of the range or none.
 
     Args:
+        mechanism: or the path of its file.
         tolerance: of what the range of payload does: less is balance; a design of rounded numbers needs more.
 
     Raises:
         InputError: no springs, no range, a payload that loads nothing, or no such tolerance.
     """
+    mechanism, tolerance = loaded(mechanism), share(tolerance, "tolerance")
     if not KEPT <= tolerance < 1:
         raise InputError(f"the tolerance must be a share from {KEPT:g} to less than 1, found {tolerance:g}")
     if not mechanism.springs:

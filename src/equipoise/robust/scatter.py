@@ -12,6 +12,7 @@ from ..arrays import Array, frozen
 from ..errors import Fault, InputError, UnsupportedError, nearest
 from ..kinematics import Tree
 from ..mechanism import Mechanism
+from ..units import QuantityField
 
 Shape = Literal["normal", "uniform"]
 Kind = Literal["stiffness", "attachment", "mass", "length"]
@@ -30,10 +31,10 @@ class Scatter:
         length: of each coordinate of each joint's place and of each mass centre [m].
     """
 
-    stiffness: float = 0.05
-    attachment: float = 0.5e-3
-    mass: float = 0.01
-    length: float = 0.5e-3
+    stiffness: QuantityField = QuantityField("share", 0.05)
+    attachment: QuantityField = QuantityField("length", 0.5e-3)
+    mass: QuantityField = QuantityField("share", 0.01)
+    length: QuantityField = QuantityField("length", 0.5e-3)
     shape: Shape = "normal"
 
     def __post_init__(self) -> None:

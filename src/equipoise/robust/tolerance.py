@@ -11,10 +11,12 @@ import numpy as np
 from ..arrays import Array, frozen
 from ..coordinate import Coordinate
 from ..errors import Fault, InputError, nearest
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..mechanism import Mechanism
 from ..progress import Progress, silent
 from ..synthesis.mounts import Mounts
+from ..units import Quantity, quantity
 from ..validate import MAX_SAMPLES, whole_number
 from .scatter import Parameter, Scatter
 from .torque_map import TorqueMap
@@ -109,18 +111,19 @@ class Tolerance:
 
 
 def tolerance(
-    mechanism: Mechanism,
+    mechanism: Source,
     scatter: Scatter | None = None,
     *,
     builds: int = 100_000,
     poses: int = 1000,
-    friction: Mapping[str, float] | float | None = None,
+    friction: Mapping[str, Quantity] | Quantity | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Tolerance:
     """Build a design many times over.
 
     Args:
+        mechanism: or the path of its file.
         scatter: what is off by how much; the usual by default.
         poses: random ones, the same for all builds; a peak is the largest over them.
         friction: what every turning joint holds [N m], or coordinate -> torque [N m] or force [N].
@@ -129,6 +132,7 @@ def tolerance(
         InputError: a bad option, nothing moves, or nothing scatters.
         UnsupportedError: lengths scatter and the mechanism has loops.
     """
+    mechanism = loaded(mechanism)
     whole_number("builds", builds, 2, MAX_SAMPLES)
     whole_number("poses", poses, 1, MAX_SAMPLES)
     whole_number("seed", seed, 0)
@@ -180,18 +184,21 @@ def _low(tau: Array) -> Array:
     return -tau.min(axis=1)
 
 
-def _friction(given: Mapping[str, float] | float | None, tree: Tree) -> dict[str, float]:
+def _friction(given: Mapping[str, Quantity] | Quantity | None, tree: Tree) -> dict[str, float]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
         given = {coordinate: given for coordinate in tree.coordinates if coordinate.turns}
+    held = {}
     for name, value in given.items():
         if name not in tree.coordinates:
             problem = f"there is no coordinate {nearest(name, tree.coordinates)}"
             raise InputError(Fault(("friction",), problem, tree.coordinates))
-        if not 0 <= value < np.inf:
-            raise InputError(Fault(("friction", name), f"must be finite and at least 0, found {value:g}"))
-    return dict(given)
+        load = tree.coordinates[tree.coordinates.index(name)].load
+        held[name] = quantity(value, load, "friction", name)
+        if held[name] < 0:
+            raise InputError(Fault(("friction", name), f"must be finite and at least 0, found {held[name]:g}"))
+    return held
 
 
 def _statistics(values: Array) -> dict[str, Any]:
