@@ -15,7 +15,7 @@ from .arrays import Array, frozen
 from .errors import Fault, InputError, nearest
 from .mechanism import Mechanism, PointMass
 from .names import Names
-from .units import number, point
+from .units import Amount, number, point, quantity
 
 
 @frozen
@@ -28,7 +28,9 @@ class Payload:
     place: Array
 
     @staticmethod
-    def at(mechanism: Mechanism, masses: Sequence[float], body: str, place: Sequence[float] = (0, 0, 0)) -> Payload:
+    def at(
+        mechanism: Mechanism, masses: Amount | Sequence[Amount], body: str, place: Sequence[Amount] = (0, 0, 0)
+    ) -> Payload:
         """One mass or a range [kg] at a point [m] of any body that moves.
 
         Raises:
@@ -37,7 +39,7 @@ class Payload:
         if body not in mechanism.body_names:
             problem = f"there is no body {nearest(body, mechanism.body_names)}"
             raise InputError(Fault(("payload_on",), problem, mechanism.body_names))
-        low, high = _range(masses)
+        low, high = _range((masses,) if isinstance(masses, (str, float, int)) else masses)
         return Payload(body, low, high, np.array(point(place, "payload_at", body)))
 
     @property
@@ -59,10 +61,10 @@ class Payload:
         return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
 
 
-def _range(masses: Sequence[float]) -> tuple[float, float]:
+def _range(masses: Sequence[Amount]) -> tuple[float, float]:
     if len(masses) not in (1, 2):
         raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
-    low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
+    low, high = (number("payload", quantity(m, "mass", "payload"), positive=False) for m in (masses[0], masses[-1]))
     if high < low:
         raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
     return low, high

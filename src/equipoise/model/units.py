@@ -31,6 +31,9 @@ SI_UNITS = {
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""
 
+Amount = float | str
+"""A number in the SI unit of what is asked for, or text with a unit, such as ``150 mm``; of a share, such as ``2%``."""
+
 LONGEST = 200  # characters of a text with a unit; none that means something is half as long
 # possessive, so that no text is gone through twice: a hostile one would take for ever
 _NUMBER = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]{1,3}+)?+")
@@ -133,12 +136,39 @@ def point(value: Any, *field: str | int) -> tuple[float, float, float]:
         InputError: they are not; the message names the field.
     """
     try:
-        x, y, z = (float(length) for length in value)
+        x, y, z = (to_si(length, "length") for length in value)
     except (TypeError, ValueError):
         x = y = z = math.nan
     if not all(map(math.isfinite, (x, y, z))):
         raise InputError(Fault(field, f"must be three lengths x,y,z [m] in its frame, found {value}"))
     return x, y, z
+
+
+class AmountField:
+    """A field of a dataclass that is made from an `Amount`, and is the number in SI then.
+
+    Args:
+        dimension: a key of `SI_UNITS`, or ``"share"``.
+        default: taken as it is; it may be infinite, as an absent limit.
+    """
+
+    def __init__(self, dimension: str, default: float) -> None:
+        self.dimension, self.default = dimension, default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, owner: object | None, kind: type | None = None) -> float:
+        return self.default if owner is None else owner.__dict__[self.name]
+
+    def __set__(self, owner: object, value: Amount) -> None:
+        if value == self.default:
+            number = self.default
+        elif self.dimension == "share":
+            number = share(value, self.name, most=math.inf)
+        else:
+            number = quantity(value, self.dimension, self.name)
+        owner.__dict__[self.name] = number
 
 
 def _parse(text: str, unit: str, expected: str) -> float:
