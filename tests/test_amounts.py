@@ -14,8 +14,8 @@ from zoo import pendulum
 import equipoise as eq
 from equipoise.clearance import clearance
 from equipoise.hardware import Envelope, Options, choose
-from equipoise.hardware.realise.realisations import bill
-from equipoise.hardware.sizing import wire
+from equipoise.hardware.realise.bill import bill
+from equipoise.hardware.sizing.wire import wire
 from equipoise.hardware.stock.made_up import made_up_catalogue
 from equipoise.hardware.stock.movable import Travel
 from equipoise.io import loaded
