@@ -35,9 +35,9 @@ def set_pose(m: Mechanism, model: mujoco.MjModel, q: dict[str, float]) -> mujoco
 
 def mujoco_state(m: Mechanism, model: Any, q: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Potential energy, and the torque that holds gravity, and springs, in our coordinates."""
-    values = dict(zip(m.coordinates, q.tolist(), strict=True))
+    values: dict[str, float] = dict(zip(m.coordinates, q.tolist(), strict=True))
     data = set_pose(m, model, values)
-    column = {name: j for j, name in enumerate(m.coordinates)}
+    column: dict[str, int] = {name: j for j, name in enumerate(m.coordinates)}
     T = np.zeros((model.nv, len(q)))  # the model's velocities per rate of our coordinates
     for name, value in mjcf.joint_map(m).items():
         row = int(model.joint(name).dofadr[0])

@@ -176,7 +176,7 @@ def fixed() -> tuple[eq.Problem, Array, Array, float]:
     hinge = replace(HINGE, joints=(replace(HINGE.joints[0], range=(-0.5, 1.0)),))
     q = sample(Tree.of(hinge), 300)
     spring = eq.Spring("one", "world", (0.1, 0, 0.4), "link2", (0.15, 0, 0), 1.0)
-    shortest = float(Potential(hinge.with_springs([spring]))(q).length.min())
+    shortest = float(Potential(hinge.with_springs([spring]))(q).path.min())
     block = FixedSpring(spring.p_a, "link2", spring.p_b, shortest)
     bare = Potential(hinge)(q).torque[:, 0]
     ends = [replace(spring, free_length=free) for free in (0.0, shortest)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import Field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ..arrays import Array
@@ -73,6 +73,12 @@ class Element(ABC):
     path_unit: ClassVar[str]
     force_unit: ClassVar[str]
     name: str
+
+    if TYPE_CHECKING:
+        # every kind is a dataclass with fields of its own, which only who knows the kind can ask for
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+        def __getattr__(self, name: str) -> Any: ...
 
     @property
     @abstractmethod
@@ -156,7 +162,7 @@ class Element(ABC):
 
     def changed(self, **values: Any) -> Self:
         """The same with other values of its fields."""
-        return replace(self, **values)  # type: ignore[type-var]  # every kind is a dataclass
+        return replace(self, **values)
 
     @abstractmethod
     def scaled(self, factor: float) -> Element:
