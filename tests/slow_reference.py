@@ -13,7 +13,7 @@ SlowPoses = dict[str, tuple[np.ndarray, np.ndarray]]
 
 def slow_values(m: Mechanism, q: np.ndarray) -> dict[str, float]:
     """The value of every coordinate and of every coupled joint, by the definition of a coupling."""
-    values = dict(zip(m.coordinates, map(float, q), strict=True))
+    values: dict[str, float] = dict(zip(m.coordinates, map(float, q), strict=True))
     couplings = {coupling.joint: coupling for coupling in m.couplings}
 
     def value(name: str) -> float:

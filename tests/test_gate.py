@@ -183,7 +183,7 @@ def messages(viewer: Any) -> dict[str, Any]:
 def test_messages_that_mean_nothing_are_ignored_with_one_line(viewer, address, capfd):
     import msgspec
 
-    saved = eq.io.yaml.to_text(viewer.model.saved())
+    saved = yaml.to_text(viewer.model.saved())
     pose = viewer.model.q.copy()
     capfd.readouterr()
     with socket(address) as found:
@@ -196,7 +196,7 @@ def test_messages_that_mean_nothing_are_ignored_with_one_line(viewer, address, c
         # the connection is still open, and a good message is still heard
         stiffness = viewer.panel.springs.sliders[0]
         wanted = round(0.8 * stiffness.value / stiffness.step) * stiffness.step
-        assert eq.io.yaml.to_text(viewer.model.saved()) == saved
+        assert yaml.to_text(viewer.model.saved()) == saved
         update = {"type": "GuiUpdateMessage", "uuid": control(viewer, stiffness.label), "updates": {"value": wanted}}
         found.send(msgspec.msgpack.encode(update))
         for _ in range(1000):

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import mujoco
@@ -33,7 +33,7 @@ def robot(name: str) -> Mechanism:
         return urdf.read(ROBOTS / f"{name}.urdf")
 
 
-def joint_values(m: Mechanism, q: dict[str, float]) -> dict[str, float]:
+def joint_values(m: Mechanism, q: Mapping[str, float]) -> dict[str, float]:
     """The value of every single joint from the coordinates, by the definition of a coupling."""
     values = dict(q)
     couplings = {c.joint: c for c in m.couplings}
@@ -46,7 +46,7 @@ def joint_values(m: Mechanism, q: dict[str, float]) -> dict[str, float]:
     return {j.name: value(j.name) for j in m.joints if j.type in ("revolute", "prismatic")} | q
 
 
-def place(m: Mechanism, q: dict[str, float]) -> Poses:
+def place(m: Mechanism, q: Mapping[str, float]) -> Poses:
     """R_WB and p_WB of every body, by the definition of the joints."""
     values = joint_values(m, q)
     holder = {j.child: j for j in m.joints}

@@ -133,7 +133,7 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
     for spring in mechanism.springs:
         tag, values, along = spring.mjcf()
         attributes = {key: numbers(value) for key, value in values.items()}
-        element = ET.SubElement(tendon, tag, name=spring.name, **attributes)
+        element = ET.SubElement(tendon, tag, {"name": spring.name, **attributes})
         for part, runs in along:
             texts = {key: value if isinstance(value, str) else numbers([value]) for key, value in runs.items()}
             ET.SubElement(element, part, texts)

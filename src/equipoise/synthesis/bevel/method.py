@@ -177,11 +177,11 @@ def _shoulder(mechanism: Mechanism) -> Shoulder:
     return found
 
 
-def _centre(shoulder: Shoulder) -> Array:
+def _centre(shoulder: Shoulder) -> list[float]:
     """(3,) [m] the mass centre of the pitch link, in its frame."""
     link = shoulder.pitch
     own = sum(m for m, _ in link.lumps)
-    return link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)
+    return (link.origin + (sum((m * p for m, p in link.lumps), np.zeros(3)) / own if own else 0.0)).tolist()
 
 
 def _within(mechanism: Mechanism, ranges: dict[str, tuple[float, float]]) -> Mechanism:
