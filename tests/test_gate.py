@@ -15,6 +15,7 @@ import pytest
 from peers import peer
 
 import equipoise as eq
+from equipoise.io import yaml
 
 ARM = Path(__file__).parents[1] / "examples" / "mechanisms" / "lin2010_balanced.yaml"
 CAMERA = {

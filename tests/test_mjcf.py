@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 import mujoco
@@ -33,7 +33,7 @@ def robot(name: str) -> Mechanism:
         return urdf.read(ROBOTS / f"{name}.urdf")
 
 
-def joint_values(m: Mechanism, q: Mapping[str, float]) -> dict[str, float]:
+def joint_values(m: Mechanism, q: dict[str, float]) -> dict[str, float]:
     """The value of every single joint from the coordinates, by the definition of a coupling."""
     values = dict(q)
     couplings = {c.joint: c for c in m.couplings}
@@ -46,7 +46,7 @@ def joint_values(m: Mechanism, q: Mapping[str, float]) -> dict[str, float]:
     return {j.name: value(j.name) for j in m.joints if j.type in ("revolute", "prismatic")} | q
 
 
-def place(m: Mechanism, q: Mapping[str, float]) -> Poses:
+def place(m: Mechanism, q: dict[str, float]) -> Poses:
     """R_WB and p_WB of every body, by the definition of the joints."""
     values = joint_values(m, q)
     holder = {j.child: j for j in m.joints}
@@ -103,7 +103,7 @@ def complaints() -> Iterator[list[str]]:
 def check(m: Mechanism, model: mujoco.MjModel, poses: int = 5, loops: bool = False) -> None:
     rng = np.random.default_rng(7)
     for _ in range(poses):
-        q = {name: float(rng.uniform(-2, 2)) for name in m.coordinates}
+        q: dict[str, float] = {name: float(rng.uniform(-2, 2)) for name in m.coordinates}
         expected = place(m, q)
         data = set_pose(m, model, q)
         for body in m.body_names:
@@ -231,7 +231,7 @@ def test_torques_are_the_gradient_of_the_energy() -> None:
     """In the motion that the equalities allow, MuJoCo's gravity and spring forces are minus dU/dq."""
     for m in (SPRINGS, robot("ur5")):
         model = mujoco.MjModel.from_xml_string(mjcf.to_text(m))
-        q = {name: 0.3 + 0.1 * i for i, name in enumerate(m.coordinates)}
+        q: dict[str, float] = {name: 0.3 + 0.1 * i for i, name in enumerate(m.coordinates)}
         data = set_pose(m, model, q)
         mujoco.mj_forward(model, data)
         for name in m.coordinates:

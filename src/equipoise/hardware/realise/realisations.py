@@ -58,7 +58,7 @@ class Options:
 
     wires: tuple[Wire, ...] = (WIRES["DH"],)
     limits: Limits = field(default_factory=Limits)
-    envelope: Envelope = Envelope()
+    envelope: Envelope = field(default_factory=lambda: Envelope())
     pulley: AmountField = AmountField("length", 10 * MM)
     ends: AmountField = AmountField("length", 10 * MM)
     most: int = 8
