@@ -27,7 +27,7 @@ class Quadratic:
     def of(gram: Gram, parts: Parts) -> Quadratic:
         """Of one set (a batch of one), whose shapes stay."""
         A = unit_torque(gram, parts)[0]
-        return Quadratic(A @ A.T, A @ gram.d, float(gram.d @ gram.d) + gram.rest**2)
+        return Quadratic(A.T @ A, A.T @ gram.d, float(gram.d @ gram.d) + gram.rest**2)
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Values (N,) and gradients (N, parts) at the amounts x (N, parts): of springs the stiffnesses [N/m]."""
