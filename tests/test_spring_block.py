@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from equipoise.synthesis.convex.blocks import Block
 from equipoise.synthesis.convex.spring_block import SpringBlock, smat, svec
 from equipoise.synthesis.region import Region
 
@@ -22,6 +23,15 @@ def test_slopes_are_central_differences():
     for i, h in enumerate(1e-6 * np.eye(6)):
         difference = (BALL_AND_BOX.part(u + h) - BALL_AND_BOX.part(u - h)) / 2e-6
         np.testing.assert_allclose(slopes[:, i], difference, atol=1e-9)  # a quadratic form: nothing but rounding
+
+
+def test_quadratic_forms_do_what_their_columns_do():
+    rng = np.random.default_rng(3)
+    columns, u = rng.normal(size=(5, 28)), rng.uniform(-1, 1, (4, 6))
+    form = BALL_AND_BOX.form(columns)
+    assert BALL_AND_BOX.columns(form) == pytest.approx(columns)
+    for found, expected in zip(BALL_AND_BOX.acts(form, u), Block.acts(BALL_AND_BOX, columns, u), strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-13)
 
 
 def test_parts_in_their_regions_lie_in_the_cones_and_others_do_not():

@@ -82,6 +82,18 @@ class Block(ABC):
     def slopes(self, u: Array) -> Array:
         """(N, shape, unknowns) derivative of `part`."""
 
+    def form(self, columns: Array) -> Array:
+        """(rows, unknowns) -> (rows, ...): what unknowns do, as `acts` wants it; linear."""
+        return columns
+
+    def columns(self, form: Array) -> Array:
+        """The inverse of `form`."""
+        return form
+
+    def acts(self, form: Array, u: Array) -> tuple[Array, Array]:
+        """(N, rows) what one unit of a part with shape u (N, shape) does, and (N, rows, shape) its derivative."""
+        return self.part(u) @ form.T, np.swapaxes(self.slopes(u) @ form.T, 1, 2)
+
     @abstractmethod
     def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
         """The mechanism with `k` units of a part of shape u (shape,)."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -47,8 +48,8 @@ class LeastSquaresForm:
     """The compressed problem, in units of the unbalanced torque.
 
     Attributes:
-        blocks: the unknowns; columns: for each (rows, unknowns), d: (rows,), rest: the root mean square torque over
-            `unbalanced` at unknowns x_b is ``sqrt(|sum_b columns_b x_b + d|^2 + rest^2)``.
+        blocks: the unknowns; forms: what they do, for each as its block wants it; d: (rows,), rest: the root mean
+            square torque over `unbalanced` at unknowns x_b is ``sqrt(|sum_b columns_b x_b + d|^2 + rest^2)``.
         cost: for each block (unknowns,) [J], what equal designs should have little of: their stored energy, as a rule.
         unbalanced: [N m] root mean square torque to be balanced, all joints together, the weighted mean of all loads.
         cases: each load by itself.
@@ -57,7 +58,7 @@ class LeastSquaresForm:
 
     problem: Problem
     blocks: tuple[Block, ...]
-    columns: tuple[Array, ...]
+    forms: tuple[Array, ...]
     d: Array
     rest: float
     cost: tuple[Array, ...]
@@ -68,8 +69,13 @@ class LeastSquaresForm:
     def on(self, chosen: Sequence[int]) -> LeastSquaresForm:
         """The same problem restricted to some of its blocks (by number)."""
         cases = tuple(Case(tuple(case.columns[i] for i in chosen), case.load) for case in self.cases)
-        parts = {name: tuple(getattr(self, name)[i] for i in chosen) for name in ("blocks", "columns", "cost")}
+        parts = {name: tuple(getattr(self, name)[i] for i in chosen) for name in ("blocks", "forms", "cost")}
         return replace(self, cases=cases, **parts)
+
+    @cached_property
+    def columns(self) -> tuple[Array, ...]:
+        """For each block (rows, unknowns)."""
+        return tuple(block.columns(form) for block, form in zip(self.blocks, self.forms, strict=True))
 
     def times(self, x: Sequence[Array]) -> Array:
         """(rows,) ``sum_b columns_b x_b``: what the unknowns x do."""
@@ -83,8 +89,9 @@ class LeastSquaresForm:
             return tuple(own * scale for own, (_, scale) in zip(each, larger, strict=True))
 
         cases = tuple(Case(scaled(case.columns), case.load) for case in self.cases)
-        parts = {"columns": scaled(self.columns), "cost": scaled(self.cost), "cases": cases}
-        return replace(self, blocks=tuple(block for block, _ in larger), **parts)
+        forms = tuple(block.form(own) for block, own in zip(self.blocks, scaled(self.columns), strict=True))
+        blocks = tuple(block for block, _ in larger)
+        return replace(self, blocks=blocks, forms=forms, cost=scaled(self.cost), cases=cases)
 
     @property
     def useful(self) -> list[int]:
@@ -117,10 +124,11 @@ def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresFor
     total = float(np.linalg.norm(R[:, -1]))
     rest = np.linalg.norm(R[:, -1] - U[:, :rank] @ d)
     unit = total or 1.0
-    columns = _split(S[:rank, None] * Vt[:rank] / unit, blocks)
+    columns = _split(S[:rank, None] * Vt[:rank], blocks)
+    forms = tuple(block.form(own) / unit for block, own in zip(blocks, columns, strict=True))
     cost = tuple(block.cost(own) for block, own in zip(blocks, _split(energy, blocks), strict=True))
     cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in factors)
-    return LeastSquaresForm(problem, blocks, columns, d / unit, float(rest) / unit, cost, total, averaged, cases)
+    return LeastSquaresForm(problem, blocks, forms, d / unit, float(rest) / unit, cost, total, averaged, cases)
 
 
 def together(problem: Problem) -> list[tuple[Mechanism, ...]]:
@@ -201,7 +209,7 @@ def _samples(problem: Problem, loaded: Sequence[Mechanism], progress: Progress |
 
 
 def _triangle(rows: Array) -> Array:
-    """The triangular factor: the same Gram matrix in as few rows as there are columns."""
+    """The triangular factor: the same LeastSquaresForm matrix in as few rows as there are columns."""
     return np.asarray(np.linalg.qr(rows, mode="r"))
 
 

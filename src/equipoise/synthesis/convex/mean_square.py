@@ -25,7 +25,7 @@ class Quadratic:
     def of(reduced: LeastSquaresForm, parts: Parts) -> Quadratic:
         """Of one set (a batch of one), whose shapes stay."""
         A = unit_torque(reduced, parts)[0]
-        return Quadratic(A @ A.T, A @ reduced.d, float(reduced.d @ reduced.d) + reduced.rest**2)
+        return Quadratic(A.T @ A, A.T @ reduced.d, float(reduced.d @ reduced.d) + reduced.rest**2)
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Values (N,) and gradients (N, parts) at the amounts x (N, parts): of springs the stiffnesses [N/m]."""

@@ -91,10 +91,10 @@ class Peak:
             if trust < 1e-7:
                 break
             chosen[np.argsort(-np.abs(tau))[:CUTS]] = True
-            slopes = jacobian(self.reduced, now)[0]  # (parts, 1 + shape, len(w))
-            J = self.L[chosen] @ slopes.reshape(-1, slopes.shape[-1]).T
+            J = self.L[chosen] @ jacobian(self.reduced, now)[0]
             one = np.ones((len(J), 1))
-            lower, upper = np.full(slopes.shape[:2], -trust), np.full(slopes.shape[:2], trust)
+            width = (now.k.shape[1], 1 + now.u.shape[2])
+            lower, upper = np.full(width, -trust), np.full(width, trust)
             lower[:, 1:], upper[:, 1:] = np.maximum(-trust, -1 - now.u[0]), np.minimum(trust, 1 - now.u[0])
             program = linprog(
                 np.append(np.zeros(J.shape[1]), 1.0),

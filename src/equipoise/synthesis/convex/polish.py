@@ -86,23 +86,23 @@ def by_block(reduced: LeastSquaresForm, block: Integers) -> Iterator[tuple[Block
 
 def residual(reduced: LeastSquaresForm, parts: Parts) -> Array:
     """(batch, rows) residual of the Gram form, as a share of the unbalanced torque, `rest` not included."""
-    return np.einsum("bs,bsr->br", parts.k, unit_torque(reduced, parts)) + reduced.d
+    return (unit_torque(reduced, parts) @ parts.k[..., None])[..., 0] + reduced.d
 
 
 def unit_torque(reduced: LeastSquaresForm, parts: Parts) -> Array:
-    """(batch, parts, rows): what one unit of each part does."""
+    """(batch, rows, parts): what one unit of each part does."""
     out = np.empty((*parts.k.shape, len(reduced.d)))
     for own, at, number in by_block(reduced, parts.block):
-        out[at] = own.part(parts.u[at, : own.shape]) @ reduced.columns[number].T
-    return out
+        out[at], _ = own.acts(reduced.forms[number], parts.u[at, : own.shape])
+    return np.swapaxes(out, 1, 2)
 
 
 def best_amounts(reduced: LeastSquaresForm, parts: Parts) -> Parts:
     """The same shapes in the amounts that leave least (each at least a trifle of the common scale)."""
     A = unit_torque(reduced, parts)
-    H = A @ np.swapaxes(A, 1, 2)
+    H = np.swapaxes(A, 1, 2) @ A
     ridge = 1e-9 * np.trace(H, axis1=1, axis2=2)[:, None, None] * np.eye(H.shape[1]) + 1e-300 * np.eye(H.shape[1])
-    k = -np.linalg.solve(H + ridge, A @ reduced.d[:, None])[..., 0]
+    k = -np.linalg.solve(H + ridge, np.swapaxes(A, 1, 2) @ reduced.d[:, None])[..., 0]
     floor = 0.05 * np.abs(k).max(axis=1, keepdims=True)
     return Parts(parts.block, np.maximum(k, np.maximum(floor, 1e-9)), parts.u)
 
@@ -140,13 +140,13 @@ def polish(reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS
 def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, reference: Array) -> Parts:
     """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
     J = jacobian(reduced, x)
-    B, S, width, _ = J.shape
-    free = _free(reduced, x, J @ r[:, None, :, None])
-    J = (free @ J).reshape(B, S * width, -1)
-    H, g = J @ np.swapaxes(J, 1, 2), J @ r[:, :, None]
+    B, S, width = *x.k.shape, 1 + x.u.shape[2]
+    free = _free(reduced, x, np.einsum("bri,br->bi", J, r).reshape(B, S, width))
+    J = (J.reshape(B, -1, S, width).transpose(0, 2, 1, 3) @ free).transpose(0, 2, 1, 3).reshape(B, -1, S * width)
+    H, g = np.swapaxes(J, 1, 2) @ J, np.einsum("bri,br->bi", J, r)
     diagonal = np.einsum("bii->bi", H)  # a view: the damping goes onto H itself
     diagonal += damping[:, None] * (diagonal + 1e-6 * diagonal.max(axis=1, keepdims=True) + 1e-30)
-    step = (free @ -np.linalg.solve(H, g).reshape(B, S, width, 1))[..., 0]
+    step = (free @ -np.linalg.solve(H, g[..., None]).reshape(B, S, width, 1))[..., 0]
     step[..., 1:] = np.clip(step[..., 1:], -1, 1)
     log_k = np.log(x.k)
     step[..., 0] = np.clip(np.clip(step[..., 0], -2, 2), reference - LOG_RANGE - log_k, reference + LOG_RANGE - log_k)
@@ -154,20 +154,19 @@ def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, referen
 
 
 def jacobian(reduced: LeastSquaresForm, x: Parts) -> Array:
-    """(batch, parts, 1 + shape, rows) derivative of `residual`: for each part by its log amount and by its shape."""
-    J = np.zeros((*x.u.shape[:2], 1 + x.u.shape[2], len(reduced.d)))
+    """(batch, rows, parts (1 + shape)) derivative of `residual`: for each part by its log amount and by its shape."""
+    J = np.zeros((*x.k.shape, len(reduced.d), 1 + x.u.shape[2]))
     for own, at, number in by_block(reduced, x.block):
-        u, Q = x.u[at, : own.shape], reduced.columns[number].T
-        slopes = own.slopes(u).reshape(-1, own.unknowns) @ Q
-        J[at, 0], J[at, 1 : 1 + own.shape] = own.part(u) @ Q, slopes.reshape(-1, own.shape, len(reduced.d))
-    return J * x.k[..., None, None]
+        J[at, :, 0], J[at, :, 1 : 1 + own.shape] = own.acts(reduced.forms[number], x.u[at, : own.shape])
+    J *= x.k[..., None, None]
+    return J.transpose(0, 2, 1, 3).reshape(len(x), len(reduced.d), -1)
 
 
 def _free(reduced: LeastSquaresForm, x: Parts, gradient: Array) -> Array:
     """(B, S, 1 + shape, 1 + shape) projectors onto the directions a step may take."""
-    free = np.zeros((*gradient.shape[:3], gradient.shape[2]))
+    free = np.zeros((*gradient.shape, gradient.shape[2]))
     free[..., 0, 0] = 1.0
     for own, at, _ in by_block(reduced, x.block):
         within = slice(1, 1 + own.shape)
-        free[at, within, within] = own.free(x.u[at, : own.shape], gradient[at, within, 0])
+        free[at, within, within] = own.free(x.u[at, : own.shape], gradient[at, within])
     return free

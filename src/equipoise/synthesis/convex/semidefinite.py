@@ -16,6 +16,7 @@ from ...model.arrays import Array, Integers, frozen
 from ...model.errors import EquipoiseError
 from .least_squares_form import LeastSquaresForm
 
+LINEAR = ("zero", "nonnegative")
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
 
@@ -40,7 +41,7 @@ class Program:
     """
 
     def __init__(self, reduced: LeastSquaresForm, extra: int) -> None:
-        self.scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in reduced.columns]
+        self.scale = [1 / max(float(np.linalg.norm(own, axis=(0, 1))), 1e-300) for own in reduced.columns]
         self.starts = np.cumsum([0, *(block.unknowns for block in reduced.blocks)]).tolist()
         self.width = self.starts[-1] + extra
         self.columns = [  # as pieces of rows
@@ -50,10 +51,20 @@ class Program:
         self.b: list[Array] = []
         self.cones: list[object] = []
         self.height = 0
-        for block, start, scale in zip(reduced.blocks, self.starts, self.scale, strict=False):
-            for cone in block.cones():
-                g = np.zeros(len(cone.F)) if cone.g is None else cone.g / scale
+        cones = [
+            (start, cone, np.zeros(len(cone.F)) if cone.g is None else cone.g / scale)
+            for block, start, scale in zip(reduced.blocks, self.starts, self.scale, strict=False)
+            for cone in block.cones()
+        ]
+        for start, cone, g in cones:
+            if cone.kind not in LINEAR:
                 self.add(cone.kind, g, [(0, start, -cone.F)])
+        for kind in LINEAR:  # one cone for all blocks
+            own = [(start, -cone.F, g) for start, cone, g in cones if cone.kind == kind]
+            rows = np.cumsum([0, *(len(g) for _, _, g in own)]).tolist()
+            if own:
+                pieces = [(row, start, A) for row, (start, A, _) in zip(rows, own, strict=False)]
+                self.add(kind, np.concatenate([g for _, _, g in own]), pieces)
 
     def add(self, kind: str, b: Array, pieces: Iterable[tuple[int, int, Array]]) -> None:
         """Rows with ``b - A x`` in a cone; A is zero but for pieces (its first row, its first unknown, the piece)."""

@@ -110,6 +110,18 @@ class SpringBlock(Block):
     def slopes(self, u: Array) -> Array:
         return (self._y(u) @ SLOPES.reshape(SIDE, -1)).reshape(len(u), self.shape, self.unknowns)
 
+    def form(self, columns: Array) -> Array:
+        return smat(columns)
+
+    def columns(self, form: Array) -> Array:
+        return svec(form)
+
+    def acts(self, form: Array, u: Array) -> tuple[Array, Array]:
+        """As quadratic forms in y, which are cheaper than their columns."""
+        y = self._y(u)[..., None]
+        Qy = (form @ y[:, None])[..., 0]
+        return (Qy @ y)[..., 0], 2 * Qy[..., [*ENDS[0], *ENDS[1]]]
+
     def project(self, u: Array) -> Array:
         return project(u.reshape(-1, 2, 3), self._is_box).reshape(u.shape)
 
