@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from math import inf
 from typing import Any, Literal
 
 import numpy as np
@@ -18,12 +19,14 @@ from .energy.fourier.closed import ClosedEnergy
 from .energy.fourier.energy import EXACT, FourierEnergy
 from .energy.fourier.frames import MAX_TERMS
 from .energy.reference import State
+from .io import Source, loaded
 from .kinematics import Linkage, Mobility, Tree, sample
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.errors import InputError, NoFourierForm
 from .model.mechanism import Mechanism
 from .model.notebook import Shown
+from .model.units import Amount, quantity, share
 from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
@@ -132,11 +135,13 @@ class Balance(Shown):
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
         return largest_share(self.residual.max, self.unbalanced.max, self.coordinates)
 
-    def balanced(self, tolerance: float = EXACT, torque: float | None = None) -> bool:
+    def balanced(self, tolerance: Amount = EXACT, torque: Amount | None = None) -> bool:
         """Whether it is exact, or the residual stays within a share of the unbalanced torque, or within `torque`."""
         if torque is not None:
-            return self.exact or bool(self.residual.max.max(initial=0) <= torque)
-        return self.exact or self.relative <= tolerance
+            left, most = float(self.residual.max.max(initial=0)), quantity(torque, "torque", "torque")
+        else:
+            left, most = self.relative, share(tolerance, "tolerance", most=inf)
+        return self.exact or left <= most
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``equipoise check --json`` (plain numbers, lists and text)."""
@@ -173,17 +178,19 @@ class Balance(Shown):
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what overflows is an error at the end
-def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, max_terms: int = MAX_TERMS) -> Balance:
+def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_terms: int = MAX_TERMS) -> Balance:
     """Judge a mechanism with its springs.
 
     Args:
+        mechanism: or the path of its file.
         samples: random poses; the mechanism's workspace says how many by default.
         max_terms: a longer Fourier form is not computed, and the verdict rests on samples.
 
     Raises:
         InputError: its loops cannot be closed, the ranges of its joints contradict each other, or its numbers are so
-            large that they overflow.
+            large that they overflow; or as `load`.
     """
+    mechanism = loaded(mechanism)
     tree = Tree.of(mechanism)
     samples = mechanism.workspace.samples if samples is None else samples
     held = 2 * (3 * tree.n + 2 * len(mechanism.springs) + 6)  # numbers for each sample
@@ -228,6 +235,11 @@ def check(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0, ma
             for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
         ),
     )
+
+
+def judged(given: Balance | Source) -> Balance:
+    """The verdict itself, or the one on a mechanism or on the file of one."""
+    return given if isinstance(given, Balance) else check(given)
 
 
 def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[FourierEnergy | None, str | None]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..energy.extremes import climb
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..model.arrays import Array, frozen
 from ..model.elements import lines
@@ -60,12 +61,13 @@ class Clearance:
         }
 
 
-def clearance(mechanism: Mechanism, *, samples: int | None = None, seed: int = 0) -> Clearance:
-    """Judge the room around the springs: random poses, then a climb from the closest of them.
+def clearance(mechanism: Source, *, samples: int | None = None, seed: int = 0) -> Clearance:
+    """Judge the room around the springs of a mechanism or a file: random poses, then a climb from the closest of them.
 
     Raises:
-        InputError: no springs, or loops that cannot be closed.
+        InputError: no springs, or loops that cannot be closed; or as `load`.
     """
+    mechanism = loaded(mechanism)
     if not mechanism.springs:
         raise InputError(f"mechanism '{mechanism.name}' has no springs")
     tree = Tree.of(mechanism)

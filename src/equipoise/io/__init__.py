@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..model.errors import Fault, InputError
+from ..model.mechanism import Mechanism
 from . import models
 
-if TYPE_CHECKING:
-    from ..model.mechanism import Mechanism
-
+Source = Mechanism | str | os.PathLike[str]
+"""A mechanism, or the path of a file that `load` reads."""
 YAML_SUFFIXES = (".yaml", ".yml")
 WRITERS = ("yaml", "urdf", "mjcf")  # the modules here that have a `to_text(mechanism)`
 
@@ -35,7 +34,20 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     raise InputError(Fault((), found, (*YAML_SUFFIXES, *models.MODEL_SUFFIXES), file=os.fspath(path)))
 
 
-def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
+def loaded(source: Source) -> Mechanism:
+    """The mechanism itself, or the one in the file: what every function that is given either begins with.
+
+    Raises:
+        InputError: it is neither, or as `load`.
+    """
+    if isinstance(source, Mechanism):
+        return source
+    if isinstance(source, (str, os.PathLike)):
+        return load(source)
+    raise InputError(f"expected a mechanism or the path of its file, found a {type(source).__name__}")
+
+
+def save(mechanism: Source, path: str | os.PathLike[str]) -> None:
     """Write a mechanism as YAML, whole or not at all; `load` gives an equal mechanism back.
 
     Raises:
@@ -45,7 +57,7 @@ def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
     from .files import write_text
 
     check_savable(path)
-    write_text(path, yaml.to_text(mechanism))
+    write_text(path, yaml.to_text(loaded(mechanism)))
 
 
 def check_savable(path: str | os.PathLike[str]) -> None:

@@ -31,6 +31,9 @@ SI_UNITS = {
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""
 
+Amount = float | str
+"""A number in the SI unit of what is asked for, or text with a unit, such as ``150 mm``; of a share, such as ``2%``."""
+
 LONGEST = 200  # characters of a text with a unit; none that means something is half as long
 # possessive, so that no text is gone through twice: a hostile one would take for ever
 _NUMBER = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]{1,3}+)?+")
@@ -110,6 +113,33 @@ def share(value: object, *field: str | int, most: float = 1.0) -> float:
         limit = f" from 0 to {most:g}" if math.isfinite(most) else ""
         raise InputError(Fault(field, f"expected a share{limit} such as 0.02 or 2%, found {_show(value)}"))
     return number
+
+
+class AmountField:
+    """A field of a dataclass that is made from an `Amount`, and is the number in SI then.
+
+    Args:
+        dimension: a key of `SI_UNITS`, or ``"share"``.
+        default: taken as it is; it may be infinite, as an absent limit.
+    """
+
+    def __init__(self, dimension: str, default: float) -> None:
+        self.dimension, self.default = dimension, default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, owner: object | None, kind: type | None = None) -> float:
+        return self.default if owner is None else owner.__dict__[self.name]
+
+    def __set__(self, owner: object, value: Amount) -> None:
+        if value == self.default:
+            number = self.default
+        elif self.dimension == "share":
+            number = share(value, self.name, most=math.inf)
+        else:
+            number = quantity(value, self.dimension, self.name)
+        owner.__dict__[self.name] = number
 
 
 def _parse(text: str, unit: str, expected: str) -> float:

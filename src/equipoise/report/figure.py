@@ -14,6 +14,7 @@ import numpy as np
 
 from ..balance import Balance, check
 from ..energy.evaluate import Potential
+from ..io import Source, loaded
 from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree
 from ..model.arrays import Array
@@ -34,13 +35,14 @@ LISTED = 8  # lines in the legend
 
 
 def save_figure(
-    mechanism: Mechanism, path: str | os.PathLike[str], *, balance: Balance | None = None, title: str | None = None
+    mechanism: Source, path: str | os.PathLike[str], *, balance: Balance | None = None, title: str | None = None
 ) -> None:
     """Draw the mechanism with its springs in two poses, beside the holding torque with and without them.
 
     The same input gives the same bytes. The file is written whole or not at all.
 
     Args:
+        mechanism: or the path of its file.
         path: ends in .svg, .png or .pdf.
         balance: the verdict on `mechanism`, computed when it is not given.
         title: in place of the mechanism's name.
@@ -48,6 +50,7 @@ def save_figure(
     Raises:
         InputError: another suffix, the folder is missing or cannot be written to, or loops that cannot be closed.
     """
+    mechanism = loaded(mechanism)
     judged = check(mechanism) if balance is None else balance
 
     def draw(figure: Any) -> None:

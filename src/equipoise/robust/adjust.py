@@ -17,12 +17,14 @@ import numpy as np
 from ..balance import Balance, check
 from ..energy.evaluate import Potential
 from ..energy.extremes import climb
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from ..model.progress import Progress, silent
+from ..model.units import Amount, share
 from ..synthesis.mounts import Mounts
 from ..synthesis.payload import Payload
 from .moves import Handle, Move, Way, What, moved, sets, value
@@ -84,21 +86,23 @@ class Adjustment:
 
 
 def adjust(
-    mechanism: Mechanism,
+    mechanism: Source,
     payload: Payload,
     *,
-    tolerance: float = KEPT,
+    tolerance: Amount = KEPT,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Adjustment:
     """Find what to move, from the springs of a design that is balanced at any payload of the range or none.
 
     Args:
+        mechanism: or the path of its file.
         tolerance: of what the range of payload does: less is balance; a design of rounded numbers needs more.
 
     Raises:
         InputError: no springs, no range, a payload that loads nothing, or no such tolerance.
     """
+    mechanism, tolerance = loaded(mechanism), share(tolerance, "tolerance")
     if not KEPT <= tolerance < 1:
         raise InputError(f"the tolerance must be a share from {KEPT:g} to less than 1, found {tolerance:g}")
     springs = lines(mechanism, "adjust")
@@ -174,8 +178,8 @@ class _Problem:
         for _ in range(ROUNDS):
             J = np.concatenate(self._columns(now, handles), axis=1)
             step = np.asarray(np.linalg.lstsq(J, -left, rcond=SINGULAR)[0], float)
-            for share in (1.0, 0.5, 0.25, 0.125):
-                trial = moved(now, handles, share * step)
+            for part in (1.0, 0.5, 0.25, 0.125):
+                trial = moved(now, handles, part * step)
                 torque = self._torque(self.payload.on(trial, mass))
                 if torque @ torque < (1 - 1e-6) * (left @ left):
                     break

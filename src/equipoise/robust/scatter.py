@@ -13,6 +13,7 @@ from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
 from ..model.mechanism import Mechanism
+from ..model.units import AmountField
 
 Shape = Literal["normal", "uniform"]
 Kind = Literal["stiffness", "attachment", "mass", "length"]
@@ -31,10 +32,10 @@ class Scatter:
         length: of each coordinate of each joint's place and of each mass centre [m].
     """
 
-    stiffness: float = 0.05
-    attachment: float = 0.5e-3
-    mass: float = 0.01
-    length: float = 0.5e-3
+    stiffness: AmountField = AmountField("share", 0.05)
+    attachment: AmountField = AmountField("length", 0.5e-3)
+    mass: AmountField = AmountField("share", 0.01)
+    length: AmountField = AmountField("length", 0.5e-3)
     shape: Shape = "normal"
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..balance import Balance, check
-from ..model.mechanism import Mechanism
+from ..io import Source, loaded
 from ..model.validate import whole_number
 from ..synthesis.payload import Payload
 
@@ -33,12 +33,13 @@ class Sweep:
         }
 
 
-def sweep(mechanism: Mechanism, payload: Payload, *, steps: int = 5) -> Sweep:
-    """Judge fixed springs at `steps` payloads of the range, its ends among them.
+def sweep(mechanism: Source, payload: Payload, *, steps: int = 5) -> Sweep:
+    """Judge fixed springs of a mechanism or a file at `steps` payloads of the range, its ends among them.
 
     Raises:
         InputError: not a number of steps.
     """
+    mechanism = loaded(mechanism)
     whole_number("steps", steps, 2, 1000)
     payloads = np.linspace(payload.low, payload.high, steps if payload.high > payload.low else 1).tolist()
     return Sweep(tuple(payloads), tuple(check(payload.on(mechanism, mass)) for mass in payloads))

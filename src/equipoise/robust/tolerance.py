@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from ..io import Source, loaded
 from ..kinematics import Tree, sample
 from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
 from ..model.progress import Progress, silent
+from ..model.units import Amount, quantity
 from ..model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 from ..synthesis.mounts import Mounts
 from .scatter import Parameter, Scatter
@@ -110,18 +112,19 @@ class Tolerance:
 
 
 def tolerance(
-    mechanism: Mechanism,
+    mechanism: Source,
     scatter: Scatter | None = None,
     *,
     builds: int = 100_000,
     poses: int = 1000,
-    friction: Mapping[str, float] | float | None = None,
+    friction: Mapping[str, Amount] | Amount | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Tolerance:
     """Build a design many times over.
 
     Args:
+        mechanism: or the path of its file.
         scatter: what is off by how much; the usual by default.
         poses: random ones, the same for all builds; a peak is the largest over them.
         friction: what every turning joint holds [N m], or coordinate -> torque [N m] or force [N].
@@ -130,6 +133,7 @@ def tolerance(
         InputError: a bad option, nothing moves, or nothing scatters.
         UnsupportedError: lengths scatter and the mechanism has loops.
     """
+    mechanism = loaded(mechanism)
     whole_number("builds", builds, 2, MAX_SAMPLES)
     whole_number("poses", poses, 1, min(MAX_SAMPLES, MOST // builds, MAX_NUMBERS // _numbers(mechanism)))
     whole_number("seed", seed, 0)
@@ -181,18 +185,21 @@ def _low(tau: Array) -> Array:
     return -tau.min(axis=1)
 
 
-def _friction(given: Mapping[str, float] | float | None, tree: Tree) -> dict[str, float]:
+def _friction(given: Mapping[str, Amount] | Amount | None, tree: Tree) -> dict[str, float]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
         given = {coordinate: given for coordinate in tree.coordinates if coordinate.turns}
+    held = {}
     for name, value in given.items():
         if name not in tree.coordinates:
             problem = f"there is no coordinate {nearest(name, tree.coordinates)}"
             raise InputError(Fault(("friction",), problem, tree.coordinates))
-        if not 0 <= value < np.inf:
-            raise InputError(Fault(("friction", name), f"must be finite and at least 0, found {value:g}"))
-    return dict(given)
+        load = tree.coordinates[tree.coordinates.index(name)].load
+        held[name] = quantity(value, load, "friction", name)
+        if held[name] < 0:
+            raise InputError(Fault(("friction", name), f"must be finite and at least 0, found {held[name]:g}"))
+    return held
 
 
 def _statistics(values: Array) -> dict[str, Any]:

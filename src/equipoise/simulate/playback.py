@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..io import Source, loaded
 from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import InputError
-from ..model.mechanism import Mechanism
+from ..model.units import Amount, quantity
 from .engine import Engine
 from .quiet import quiet
 
@@ -64,16 +65,18 @@ class Playback:
         }
 
 
-def play(mechanism: Mechanism, time: Array, motion: Array, radius: float | None = None) -> Playback:
+def play(mechanism: Source, time: Array, motion: Array, radius: Amount | None = None) -> Playback:
     """Inverse dynamics along a motion, by the engine, with the friction and damping that the joints have.
 
     Args:
+        mechanism: or the path of its file.
         time: (T,) [s], increasing; motion: (T, n) independent coordinates [rad or m], smooth.
         radius: as `release`.
 
     Raises:
         InputError: the loops do not close somewhere, a joint leaves its range, or as `Engine`.
     """
+    mechanism, radius = loaded(mechanism), None if radius is None else quantity(radius, "length", "radius")
     if len(time) < 3 or (np.diff(time) <= 0).any():
         raise InputError("a motion needs at least three times, in increasing order")
     sprung, bare = (Engine(m, radius, friction=True) for m in (mechanism, mechanism.with_springs(())))

@@ -12,12 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from ..io import Source, loaded
 from ..kinematics.sampling import sample
 from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError
 from ..model.mechanism import Mechanism
 from ..model.progress import Progress, silent
+from ..model.units import Amount, quantity
 from ..model.validate import whole_number
 from .engine import Engine, Settings
 
@@ -124,13 +126,13 @@ class Release:
 
 
 def release(
-    mechanism: Mechanism,
+    mechanism: Source,
     *,
-    seconds: float = 10.0,
+    seconds: Amount = 10.0,
     poses: int = 10,
     seed: int = 0,
-    tolerance: float = 1e-4,
-    radius: float | None = None,
+    tolerance: Amount = 1e-4,
+    radius: Amount | None = None,
     control: bool = True,
     friction: bool = False,
     progress: Progress | None = None,
@@ -138,6 +140,7 @@ def release(
     """Let a mechanism go at rest from random poses inside its limits.
 
     Args:
+        mechanism: or the path of its file.
         seconds: of each run.
         tolerance: the drift that counts as staying [rad, or m of slides].
         radius: [m] of the uniform sphere that stands for a body without an inertia; without it that is an error.
@@ -149,12 +152,14 @@ def release(
         UnsupportedError: MJCF cannot express the mechanism.
         EngineError: the simulation diverged.
     """
+    mechanism, radius = loaded(mechanism), None if radius is None else quantity(radius, "length", "radius")
+    seconds, tolerance = quantity(seconds, "time", "seconds"), quantity(tolerance, "angle", "tolerance")
     whole_number("poses", poses, 1, MAX_POSES)
     whole_number("seed", seed, 0)
     if not SECONDS[0] <= seconds <= SECONDS[1]:
         raise InputError(Fault(("seconds",), f"must be between {SECONDS[0]:g} and {SECONDS[1]:g} s, found {seconds:g}"))
-    if not (np.isfinite(tolerance) and tolerance > 0):
-        raise InputError(Fault(("tolerance",), f"must be more than 0 and finite, found {tolerance:g}"))
+    if tolerance <= 0:
+        raise InputError(Fault(("tolerance",), f"must be more than 0, found {tolerance:g} rad"))
     engine = Engine(mechanism, radius, friction)
     if engine.tree.n == 0:
         raise InputError(f"mechanism '{mechanism.name}' has no joint that moves: nothing to let go")

@@ -12,6 +12,7 @@ from .._version import __version__
 from ..balance import Balance, check
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
+from ..model.units import Amount, quantity
 
 if TYPE_CHECKING:
     from .convex.ordinary import Ordinary
@@ -148,24 +149,26 @@ class Design(Shown):
             return None
         return max(0.0, self.residual - self.bound) / self.unbalanced if self.unbalanced else 0.0
 
-    def with_ordinary_springs(self, free_length: float | Mapping[str, float] | None = None, **options: Any) -> Design:
-        """The same with free lengths, or room for its springs; see `free_length.ordinary`. Its bound is no more."""
-        from .convex.ordinary import ordinary
+    def with_ordinary_springs(self, free_length: Amount | Mapping[str, Amount] | None = None, **options: Any) -> Design:
+        """The same with free lengths, or room for its springs; see `OrdinaryOptions`. Its bound is no more."""
+        from .convex.ordinary import OrdinaryOptions, ordinary
 
-        found = ordinary(self.mechanism, free_length, **options)
+        found, asked = ordinary(self.mechanism, free_length, **options), OrdinaryOptions(free_length, **options)
         residual = sqrt(float(sum(found.balance.residual.rms**2)))
         unbalanced = sqrt(float(sum(found.balance.unbalanced.rms**2)))
         samples = found.balance.certificate.samples
-        given = {**self.free_parameters, "free_length": dict(found.free_length), **options}
+        given = {**self.free_parameters, "free_length": dict(found.free_length)}
+        given |= {name: getattr(asked, name) for name in options}
         return replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
             joints=None, averaged=False, samples=samples, loads=(), free_parameters=given, ordinary=found,
             judged=found.balance,
         ).with_provenance()  # fmt: skip
 
-    def with_diameter(self, diameter: float) -> Design:
+    def with_diameter(self, diameter: Amount) -> Design:
         """The same design with springs of an outer diameter [m]."""
-        springs = (replace(spring, diameter=diameter) for spring in self.mechanism.springs)
+        size = quantity(diameter, "length", "diameter")
+        springs = (replace(spring, diameter=size) for spring in self.mechanism.springs)
         return replace(self, mechanism=self.mechanism.with_springs(springs))
 
     def with_provenance(self) -> Design:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError, nearest
-from .options import Number
+from ..model.units import Amount
 
-Value = Number | Sequence[Number]
+Value = Amount | Sequence[Amount]
 Given = Value | Mapping[str, Value] | None
 """One value for all links, or link -> value with the value for all others under "*"."""
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, ParamSpec, Protocol, cast, overload
 
+from ..io import Source, loaded
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
-from ..model.mechanism import Mechanism
 from .bevel import method as bevel
 from .convex import method as convex
 from .convex.method import ConvexOptions
@@ -40,28 +40,22 @@ class _ByMethod(Protocol[C, B, P, N, S, D]):
 
     @overload
     def __call__(
-        self, mechanism: Mechanism, method: Literal["convex"] = "convex", *args: C.args, **options: C.kwargs
+        self, mechanism: Source, method: Literal["convex"] = "convex", *args: C.args, **options: C.kwargs
     ) -> Design: ...
     @overload
     def __call__(
-        self, mechanism: Mechanism, method: Literal["pseudobase"], *args: B.args, **options: B.kwargs
+        self, mechanism: Source, method: Literal["pseudobase"], *args: B.args, **options: B.kwargs
     ) -> Design: ...
     @overload
-    def __call__(
-        self, mechanism: Mechanism, method: Literal["planar"], *args: P.args, **options: P.kwargs
-    ) -> Design: ...
+    def __call__(self, mechanism: Source, method: Literal["planar"], *args: P.args, **options: P.kwargs) -> Design: ...
     @overload
     def __call__(
-        self, mechanism: Mechanism, method: Literal["no-auxiliary"], *args: N.args, **options: N.kwargs
+        self, mechanism: Source, method: Literal["no-auxiliary"], *args: N.args, **options: N.kwargs
     ) -> Design: ...
     @overload
-    def __call__(
-        self, mechanism: Mechanism, method: Literal["bevel"], *args: S.args, **options: S.kwargs
-    ) -> Design: ...
+    def __call__(self, mechanism: Source, method: Literal["bevel"], *args: S.args, **options: S.kwargs) -> Design: ...
     @overload
-    def __call__(
-        self, mechanism: Mechanism, method: Literal["delta"], *args: D.args, **options: D.kwargs
-    ) -> Design: ...
+    def __call__(self, mechanism: Source, method: Literal["delta"], *args: D.args, **options: D.kwargs) -> Design: ...
 
 
 def _typed(
@@ -76,11 +70,11 @@ def _typed(
     return lambda function: cast("_ByMethod[C, B, P, N, S, D]", function)
 
 
-def by_name(mechanism: Mechanism, method: str, **options: Any) -> Design:
+def by_name(mechanism: Source, method: str, **options: Any) -> Design:
     """`design` by a method whose name is not known before the program runs."""
     if method not in METHODS:
         raise InputError(Fault(("method",), f"there is no method {nearest(method, METHODS)}", tuple(METHODS)))
-    chosen = METHODS[method]
+    mechanism, chosen = loaded(mechanism), METHODS[method]
     valid = chosen.options.names()
     for name in options:
         if name not in valid:
@@ -99,10 +93,11 @@ def by_name(mechanism: Mechanism, method: str, **options: Any) -> Design:
     bevel.BevelOptions,
     delta.DeltaOptions,
 )
-def design(mechanism: Mechanism, method: str = "convex", **options: Any) -> Design:
+def design(mechanism: Source, method: str = "convex", **options: Any) -> Design:
     """Design springs for a mechanism.
 
     Args:
+        mechanism: or the path of its file.
         method: a key of `METHODS`; options: that method's own, see its type, such as `ConvexOptions`.
 
     Raises:

@@ -20,8 +20,6 @@ from ..model.units import SI_UNITS, quantity, share
 Kind = Literal[
     "length", "angle", "mass", "stiffness", "torque", "number", "share", "whole", "text", "names", "pairs", "flag"
 ]
-Number = float | str
-"""A number in SI units, or text with its unit such as ``"150 mm"``; the options hold the number."""
 P = ParamSpec("P")
 Value = TypeVar("Value")
 Asked = TypeVar("Asked")

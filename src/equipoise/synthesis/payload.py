@@ -12,14 +12,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..balance import check
+from ..io import Source, loaded
 from ..io.text import Names
 from ..model.arrays import Array, frozen
 from ..model.elements import Element
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism, PointMass
+from ..model.units import Amount, quantity
 from .arms.shoulder import Shoulder
 from .given import number, vectors
-from .options import Number
 
 
 @frozen
@@ -32,7 +33,7 @@ class Payload:
     place: Array
 
     @staticmethod
-    def of(shoulder: Shoulder, masses: Sequence[Number] | None, place: Sequence[Number] | None) -> Payload:
+    def of(shoulder: Shoulder, masses: Sequence[Amount] | None, place: Sequence[Amount] | None) -> Payload:
         """One mass or a range, at a point of the pitch link or at its mass centre.
 
         Raises:
@@ -48,17 +49,20 @@ class Payload:
         return Payload(link.name, low, high, at)
 
     @staticmethod
-    def at(mechanism: Mechanism, masses: Sequence[float], body: str, place: Sequence[float] = (0, 0, 0)) -> Payload:
+    def at(
+        mechanism: Source, masses: Amount | Sequence[Amount], body: str, place: Sequence[Amount] = (0, 0, 0)
+    ) -> Payload:
         """One mass or a range [kg] at a point [m] of any body that moves.
 
         Raises:
             InputError: not one or two masses, no such body, or not a point.
         """
-        if body not in mechanism.body_names:
-            problem = f"there is no body {nearest(body, mechanism.body_names)}"
-            raise InputError(Fault(("payload_on",), problem, mechanism.body_names))
-        low, high = _range(masses)
-        return Payload(body, low, high, vectors("payload_at", {body: place}, [body])[body])
+        names = loaded(mechanism).body_names
+        if body not in names:
+            raise InputError(Fault(("payload_on",), f"there is no body {nearest(body, names)}", names))
+        low, high = _range((masses,) if isinstance(masses, (str, float, int)) else masses)
+        point = [quantity(x, "length", "payload_at", body) for x in place]
+        return Payload(body, low, high, vectors("payload_at", {body: point}, [body])[body])
 
     @property
     def middle(self) -> float:
@@ -84,10 +88,10 @@ class Payload:
         return dict(zip(low.coordinates, np.maximum(low.residual.max, high.residual.max).tolist(), strict=True))
 
 
-def _range(masses: Sequence[Number]) -> tuple[float, float]:
+def _range(masses: Sequence[Amount]) -> tuple[float, float]:
     if len(masses) not in (1, 2):
         raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
-    low, high = (number("payload", mass, positive=False) for mass in (masses[0], masses[-1]))
+    low, high = (number("payload", quantity(m, "mass", "payload"), positive=False) for m in (masses[0], masses[-1]))
     if high < low:
         raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
     return low, high

@@ -13,17 +13,19 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..io import Source, loaded
 from ..kinematics import Tree
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
+from ..model.units import Amount
 from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.blocks import Block
 from .convex.spring_block import SpringBlock
 from .given import number
 from .load import OWN, Load
 from .mounts import Mounts
-from .options import Number, Options, option, takes
+from .options import Options, option, takes
 from .region import SHAPES, Region, Shape
 
 __all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
@@ -42,7 +44,7 @@ class ProblemOptions(Options):
         pairs: the pairs of bodies that may be joined by springs.
         radius: [m] of every region without one of its own in `regions`; by default from each link's size.
         shape: of those regions, ball or box.
-        regions: body -> where springs may be attached to it.
+        regions: body -> where springs may be attached to it; a length is the region of that radius and `shape`.
         objective: "rms" (mean square over configurations and joints) or "peak" (the largest torque).
         joints: the joints or coordinates whose torque counts, all by default; a spherical joint stands for its three.
         weights: joint or coordinate -> the factor by which its torque counts, 1 where none is given.
@@ -57,9 +59,9 @@ class ProblemOptions(Options):
 
     span: int = option(2, "whole", "springs join bodies at most this many moving joints apart (default 2)")
     pairs: Iterable[Pair] | None = None
-    radius: Number | None = option(None, "length", "of every attachment region (default: from each link's size)")
+    radius: Amount | None = option(None, "length", "of every attachment region (default: from each link's size)")
     shape: Shape = "ball"
-    regions: Mapping[str, Region] | None = None
+    regions: Mapping[str, Region | Amount] | None = None
     objective: Objective = option("rms", "text", "what is minimised (default rms torque)", OBJECTIVES)
     joints: Iterable[str] | None = option(None, "names", "A,B,...: the joints whose torque counts (default: all)")
     weights: Mapping[str, float] | None = option(
@@ -106,8 +108,9 @@ class Problem:
 
     @staticmethod
     @takes(ProblemOptions)
-    def of(mechanism: Mechanism, options: ProblemOptions) -> Problem:
+    def of(mechanism: Source, options: ProblemOptions) -> Problem:
         """The problem with sensible defaults; see `ProblemOptions`, and `Problem` for what it raises."""
+        mechanism = loaded(mechanism)
         given = options.of(ProblemOptions)
         if given["pairs"] is None:
             whole_number("span", options.span, 1)
@@ -132,7 +135,7 @@ class Problem:
         self._set("pairs", _distinct(_known(self.mechanism, "pairs", p) for p in self.pairs))
         if not self.pairs and not self.beside:
             raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
-        self._set("regions", dict(self.regions))
+        self._set("regions", {body: Region.of(given, body, self.shape) for body, given in self.regions.items()})
         self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
         self._set("weights", _weights(self.judged, self.weights))
         self._set("loads", tuple(self.loads))
@@ -150,7 +153,7 @@ class Problem:
         """The same problem on other pairs."""
         return replace(self, pairs=tuple(pairs), span=None)
 
-    def with_regions(self, regions: Mapping[str, Region]) -> Problem:
+    def with_regions(self, regions: Mapping[str, Region | Amount]) -> Problem:
         """The same problem with other attachment regions for some bodies."""
         return replace(self, regions={**self.regions, **regions})
 

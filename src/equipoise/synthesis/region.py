@@ -9,7 +9,9 @@ from typing import Literal
 import numpy as np
 
 from ..model.arrays import Array, Booleans
+from ..model.elements import Vec3
 from ..model.errors import Fault, InputError
+from ..model.units import Amount, quantity
 
 Shape = Literal["ball", "box"]
 SHAPES: tuple[Shape, ...] = ("ball", "box")
@@ -29,17 +31,24 @@ class Region:
     shape: Shape = "ball"
 
     @staticmethod
-    def ball(radius: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
+    def ball(radius: Amount, centre: Iterable[Amount] = (0.0, 0.0, 0.0)) -> Region:
         """A ball around `centre` [m]."""
-        x, y, z = centre
-        return Region((x, y, z), (radius, radius, radius), "ball")
+        r = quantity(radius, "length", "radius")
+        return Region(_point(centre, "centre"), (r, r, r), "ball")
 
     @staticmethod
-    def box(half: float | Iterable[float], centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Region:
+    def box(half: Amount | Iterable[Amount], centre: Iterable[Amount] = (0.0, 0.0, 0.0)) -> Region:
         """A box around `centre`, +-`half` along each axis of the body [m]."""
-        hx, hy, hz = [float(half)] * 3 if isinstance(half, (int, float)) else half
-        x, y, z = centre
-        return Region((x, y, z), (hx, hy, hz), "box")
+        sides = [half] * 3 if isinstance(half, (str, float, int)) else half
+        return Region(_point(centre, "centre"), _point(sides, "half"), "box")
+
+    @staticmethod
+    def of(given: Region | Amount, body: str, shape: Shape = "ball") -> Region:
+        """The region itself, or the one of this radius, or half side, around the body's origin [m]."""
+        if isinstance(given, Region):
+            return given
+        size = quantity(given, "length", "regions", body)
+        return Region.ball(size) if shape == "ball" else Region.box(size)
 
     def times(self, factor: float) -> Region:
         """The region enlarged about its centre."""
@@ -65,6 +74,11 @@ class Region:
         if not reach / EXTREME <= size <= reach * EXTREME:
             limits = f"{reach / EXTREME:.1g} m and {reach * EXTREME:.1g} m"
             raise InputError(Fault(("regions", body), f"its size must be between {limits}, found {size:g} m"))
+
+
+def _point(values: Iterable[Amount], field: str) -> Vec3:
+    x, y, z = (quantity(value, "length", field) for value in values)
+    return x, y, z
 
 
 def project(u: Array, is_box: Booleans) -> Array:

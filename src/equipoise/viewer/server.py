@@ -9,9 +9,8 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
-from ..io import check_savable
+from ..io import Source, check_savable, loaded
 from ..model.errors import EquipoiseWarning, Fault, InputError
-from ..model.mechanism import Mechanism
 from .gate import quiet, served
 
 HOST, PORT = "127.0.0.1", 8080
@@ -28,7 +27,7 @@ class Viewer:
 
     def __init__(
         self,
-        mechanism: Mechanism,
+        mechanism: Source,
         output: str | os.PathLike[str],
         *,
         host: str = HOST,
@@ -38,6 +37,7 @@ class Viewer:
         """Start it.
 
         Args:
+            mechanism: or the path of its file.
             output: the YAML file that the page's button saves to: nothing else is ever written.
             port: the next free one is taken where it is in use.
             source: the file that the mechanism is from: the meshes that a URDF names are drawn.
@@ -62,6 +62,7 @@ class Viewer:
         from .panel import Panel
         from .scene import Scene
 
+        mechanism = loaded(mechanism)
         self.model = Model(mechanism)
         self.server, gate, messages = served(viser, host, port, mechanism.name)
         self.server.gui.configure_theme(

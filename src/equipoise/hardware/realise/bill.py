@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ...balance import Balance, SpringUse
+from ...balance import Balance, SpringUse, judged
+from ...io import Source
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, nearest
 from ...model.mechanism import Mechanism
@@ -90,7 +91,7 @@ class Bill:
 
 
 def bill(
-    balance: Balance,
+    balance: Balance | Source,
     options: Options | None = None,
     kind: str | None = None,
     progress: Progress | None = None,
@@ -103,7 +104,8 @@ def bill(
     Raises:
         InputError: no springs, or an unknown kind.
     """
-    options, mechanism = options or Options(), balance.mechanism
+    options, balance = options or Options(), judged(balance)
+    mechanism = balance.mechanism
     if not mechanism.springs:
         raise InputError(Fault(("springs",), f"mechanism '{mechanism.name}' has none; design some first"))
     if kind is not None and kind not in KINDS:

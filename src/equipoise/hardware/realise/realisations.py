@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from ...kinematics import Tree, sample
 from ...model.arrays import Array, frozen
 from ...model.elements import Spring, lines
 from ...model.mechanism import Mechanism
+from ...model.units import AmountField, share
 from ..sizing.limits import Limits
 from ..sizing.winding import Envelope, Need, Winding, compression, extension, side_by_side
 from ..sizing.wire import MM, WIRES, Wire
@@ -57,10 +59,14 @@ class Options:
     wires: tuple[Wire, ...] = (WIRES["DH"],)
     limits: Limits = field(default_factory=Limits)
     envelope: Envelope = field(default_factory=Envelope)
-    pulley: float = 10 * MM
-    ends: float = 10 * MM
+    pulley: AmountField = AmountField("length", 10 * MM)
+    ends: AmountField = AmountField("length", 10 * MM)
     most: int = 8
-    friction: Mapping[str, float] = field(default_factory=lambda: dict(FRICTION))
+    friction: Mapping[str, Any] = field(default_factory=lambda: dict(FRICTION))
+
+    def __post_init__(self) -> None:
+        held = {kind: share(value, "friction", kind) for kind, value in self.friction.items()}
+        object.__setattr__(self, "friction", held)
 
 
 @frozen

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import Fault, InputError
+from ...model.units import AmountField
 from .compression import CompressionSpring, least_free_length
 from .extension import LOOP, ExtensionSpring
 from .helical import Helical, coils_for
@@ -55,8 +56,8 @@ class Need:
 class Envelope:
     """The room for each spring: greatest outer diameter and greatest length in use [m]."""
 
-    outer: float = inf
-    length: float = inf
+    outer: AmountField = AmountField("length", inf)
+    length: AmountField = AmountField("length", inf)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import Fault, InputError, nearest
+from ...model.units import Amount, quantity
 
 Quantity = Any  # a float, or an array of as many values as there are candidate springs
 
@@ -120,7 +121,7 @@ WIRES: dict[str, Wire] = {
 }
 
 
-def wire(name: str, strength: float | None = None) -> Wire:
+def wire(name: str, strength: Amount | None = None) -> Wire:
     """A grade by name, with its standard's strength or a given one [Pa].
 
     Raises:
@@ -128,9 +129,10 @@ def wire(name: str, strength: float | None = None) -> Wire:
     """
     if name not in WIRES:
         raise InputError(Fault(("wire",), f"unknown grade {nearest(name, WIRES)}", tuple(WIRES)))
-    if strength is not None and not 0 < strength < np.inf:
-        raise InputError(Fault(("strength",), f"must be more than 0 Pa and finite, found {strength:g}"))
+    given = None if strength is None else quantity(strength, "stress", "strength")
+    if given is not None and given <= 0:
+        raise InputError(Fault(("strength",), f"must be more than 0 Pa, found {given:g}"))
     found = WIRES[name]
-    if strength is None and found.line is None and not found.steps:
+    if given is None and found.line is None and not found.steps:
         raise InputError(Fault(("strength",), f"the tensile strength of {name} wire must be given"))
-    return found if strength is None else found.with_strength(strength)
+    return found if given is None else found.with_strength(given)

@@ -20,6 +20,7 @@ from ...model.arrays import Array, frozen
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, UnsupportedError
 from ...model.mechanism import Mechanism
+from ...model.units import AmountField
 
 RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
@@ -46,7 +47,7 @@ class Travel:
 
     low: float = 0.25
     high: float = 4.0
-    reach: float = np.inf
+    reach: AmountField = AmountField("length", np.inf)
 
     def __post_init__(self) -> None:
         if not 0 < self.low <= 1 <= self.high < np.inf:

@@ -14,13 +14,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...balance import Balance
+from ...balance import Balance, judged
 from ...energy.extremes import climb
+from ...io import Source
 from ...model.arrays import Array
 from ...model.elements import lines
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress, silent
+from ...model.units import Amount, quantity
 from .movable import Movable, Travel
 from .parts import Catalogue, Stock
 from .relaxation import OutOfTime, Pull, Relaxation
@@ -85,12 +87,12 @@ class Choice:
 
 
 def choose(
-    balance: Balance,
+    balance: Balance | Source,
     catalogue: Catalogue,
     *,
     goal: Goal = "mass",
     travel: Travel | None = None,
-    seconds: float = 60.0,
+    seconds: Amount = 60.0,
     progress: Progress | None = None,
 ) -> Choice:
     """Choose the best stock spring for every spring of a judged design, and move its attachments.
@@ -104,14 +106,15 @@ def choose(
     """
     if goal not in GOALS:
         raise InputError(Fault(("goal",), f"unknown goal {nearest(goal, GOALS)}", GOALS))
-    start, movable = monotonic(), Movable(balance.mechanism, travel)
+    limit = quantity(seconds, "time", "seconds")
+    start, movable = monotonic(), Movable(judged(balance).mechanism, travel)
     say = progress or silent
     say("looking at the stock", 0.0)
     relaxation = _relaxation(movable, catalogue, goal)
     best: Choice | None = None
     bound, settled, unsettled, open_bound = 0.0, 0, 0, np.inf
     while best is None or best.cost > bound * (1 + 1e-9):
-        left = seconds - (monotonic() - start)
+        left = limit - (monotonic() - start)
         try:
             found = relaxation.solve(seconds=left) if left > 0 else None
         except OutOfTime:
@@ -121,7 +124,7 @@ def choose(
             bound = np.inf if left > 0 else bound  # everything is looked at, or the time is up
             break
         bound = max(bound, found.bound)
-        say(f"set {settled + 1}, cost at least {bound:.4g}", min(1.0, 1 - left / seconds))
+        say(f"set {settled + 1}, cost at least {bound:.4g}", min(1.0, 1 - left / limit))
         settled += 1
         shares = _settle(relaxation, found.stock, found.shares)
         relaxation.excluded.append(found.stock)
@@ -137,7 +140,7 @@ def choose(
     if best is None:
         why = "no set of these springs does what the design's springs do"
         if bound < np.inf or unsettled:
-            why = f"none was found in {seconds:g} s; {settled} sets were looked at, {unsettled} are unsettled"
+            why = f"none was found in {limit:g} s; {settled} sets were looked at, {unsettled} are unsettled"
         raise InfeasibleError(f"{why} with attachments moved within their limits")
     bound = min(bound, best.cost, open_bound)
     taken = monotonic() - start

@@ -21,6 +21,7 @@ from ...model.arrays import Array
 from ...model.coordinate import Coordinate
 from ...model.errors import EquipoiseError
 from ...model.progress import Progress
+from ...model.units import Amount
 from ...robust import Scatter, Tolerance, tolerance
 from ...simulate import Release, release
 from ...simulate.release import SOFT
@@ -43,7 +44,7 @@ class Run:
     tolerance: Tolerance | str | None = None
 
 
-def run(balance: Balance, extras: tuple[str, ...], seed: int, radius: float | None, report: Progress) -> Run:
+def run(balance: Balance, extras: tuple[str, ...], seed: int, radius: Amount | None, report: Progress) -> Run:
     """Run what is asked for; what a mechanism does not allow is no error."""
     m = balance.mechanism
 

@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable
 from importlib.util import find_spec
 from pathlib import Path
 
-from ...balance import Balance
+from ...balance import Balance, judged
+from ...io import Source
 from ...io.files import check_writable, write_bytes
 from ...model.errors import Fault, InputError, nearest
 from ...model.progress import Progress, silent
+from ...model.units import Amount
 from .. import style
 from ..text import verdict
 from . import design
@@ -25,11 +27,11 @@ WRITERS: dict[str, Callable[[Report], bytes]] = {".html": lambda report: page(re
 
 
 def make(
-    balance: Balance,
+    balance: Balance | Source,
     *,
     extras: Iterable[str] = EXTRAS,
     seed: int = 0,
-    radius: float | None = None,
+    radius: Amount | None = None,
     file: Path | None = None,
     command: str = "",
     progress: Progress | None = None,
@@ -45,7 +47,7 @@ def make(
     Raises:
         InputError: an unknown extra.
     """
-    wanted = tuple(extras)
+    wanted, balance = tuple(extras), judged(balance)
     for name in wanted:
         if name not in EXTRAS:
             raise InputError(Fault(("with",), f"no section {nearest(name, EXTRAS)}", EXTRAS))

@@ -24,13 +24,14 @@ from ...model.arrays import Array
 from ...model.elements import Spring, Vec3
 from ...model.errors import Fault, InfeasibleError, InputError
 from ...model.mechanism import Body, Coupling, Joint, Mechanism
+from ...model.units import Amount
 from ..arms.shoulder import Shoulder, find
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes
 from ..margin import torque_margin
 from ..method import Method
 from ..mounts import Mounts
-from ..options import MethodOptions, Number, option, takes
+from ..options import MethodOptions, option, takes
 from ..payload import Payload
 from .differential import ARRANGEMENTS, SIDES, differential
 
@@ -65,12 +66,12 @@ class BevelOptions(MethodOptions):
     arrangement: str = option(
         "near", "text", "the side of the fixed gear on the roll axis (default near)", ARRANGEMENTS
     )
-    gear_ratio: Number = option(1.0, "number", "teeth of the fixed gear over a disk's (default 1; others approximate)")
+    gear_ratio: Amount = option(1.0, "number", "teeth of the fixed gear over a disk's (default 1; others approximate)")
     disk_mass: Given = option(0.0, "mass", "of a disk with its gear (default 0); BODY is left or right", each=True)
-    spacing: Number | None = option(None, "length", "from O to either disk (default a quarter of the link's size)")
+    spacing: Amount | None = option(None, "length", "from O to either disk (default a quarter of the link's size)")
     workspace: str = option("file", "text", "joint ranges (default file)", WORKSPACES)
-    payload: Sequence[Number] | None = option(None, "mass", "one mass, or a range LOW,HIGH", many=True)
-    payload_at: Sequence[Number] | None = option(
+    payload: Sequence[Amount] | None = option(None, "mass", "one mass, or a range LOW,HIGH", many=True)
+    payload_at: Sequence[Amount] | None = option(
         None, "length", "x,y,z in the link's frame (default its com)", many=True
     )
     friction: Given = option(None, "torque", "of the joints, for the margin; BODY is a joint's name", each=True)

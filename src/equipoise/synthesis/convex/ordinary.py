@@ -11,7 +11,7 @@ workspace is judged, and the poses where something is too near are added until t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,11 +20,14 @@ import numpy as np
 from ...balance import Balance, check
 from ...clearance import Clearance, Room
 from ...clearance import clearance as judge_room
+from ...io import Source, loaded
 from ...kinematics import Tree, sample
 from ...model.elements import lines
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
+from ...model.units import Amount
 from ...model.validate import MAX_SAMPLES, whole_number
+from ..options import Options, option, takes
 from ..problem import Region
 from .ordinary_fit import FREE_LENGTHS, Fit
 
@@ -89,20 +92,11 @@ class Ordinary:
         }
 
 
-def ordinary(
-    mechanism: Mechanism,
-    free_length: float | Mapping[str, float] | None = None,
-    *,
-    clearance: float | None = None,
-    regions: Mapping[str, Region] | None = None,
-    stiffness_factor: float = 5.0,
-    preload: float = 0.0,
-    poses: int = 200,
-    seed: int = 0,
-) -> Ordinary:
-    """Make the best of a design whose springs have a free length, or need room, or both.
+@dataclass(frozen=True)
+class OrdinaryOptions(Options):
+    """What `ordinary` can be asked for.
 
-    Args:
+    Attributes:
         free_length: of all springs, or spring -> free length [m], and other springs stay as they are; by default all
             springs move and have the free lengths that they have.
         clearance: [m] what every spring keeps from other springs and from links that it is not fixed to.
@@ -110,24 +104,44 @@ def ordinary(
         stiffness_factor: stiffness stays between its old value over this and times this.
         preload: the share of the free length that initial tension may take away; a rod in series may double it.
         poses: random ones that the residual torque is minimised on, root mean square.
+        seed: of those poses.
+    """
+
+    free_length: Amount | Mapping[str, Amount] | None = option(None, "length", "of the springs")
+    _: KW_ONLY
+    clearance: Amount | None = option(None, "length", "what springs keep from each other and from links")
+    regions: Mapping[str, Region | Amount] | None = None
+    stiffness_factor: Amount = option(5.0, "number", "by which stiffness may change")
+    preload: Amount = option(0.0, "share", "of the free length that initial tension may take away")
+    poses: int = 200
+    seed: int = 0
+
+
+@takes(OrdinaryOptions)
+def ordinary(mechanism: Source, options: OrdinaryOptions) -> Ordinary:
+    """Make the best of a design whose springs have a free length, or need room, or both; see `OrdinaryOptions`.
 
     Raises:
         InputError: a bad option, or no such spring.
         InfeasibleError: no place was found with so much room.
     """
-    lengths = _lengths(mechanism, free_length)
+    mechanism = loaded(mechanism)
+    stiffness_factor, preload = float(options.stiffness_factor), float(options.preload)
+    clearance = None if options.clearance is None else float(options.clearance)
+    regions = {body: Region.of(given, body) for body, given in (options.regions or {}).items()}
+    lengths = _lengths(mechanism, options.free_length)
     if not (1 <= stiffness_factor < np.inf and 0 <= preload <= 1):
         raise InputError("stiffness_factor must be at least 1 and preload a share from 0 to 1")
     if clearance is not None and not 0 <= clearance < np.inf:
         raise InputError(Fault(("clearance",), f"must be at least 0 m, found {clearance:g}"))
-    whole_number("poses", poses, 1, MAX_SAMPLES)
-    q = sample(Tree.of(mechanism), poses, seed)
+    whole_number("poses", options.poses, 1, MAX_SAMPLES)
+    q = sample(Tree.of(mechanism), options.poses, options.seed)
     plain = mechanism.with_springs(
         replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
     )
 
     def fitted(room: Room | None) -> Mechanism:
-        fit = Fit(mechanism, lengths, regions or {}, q, room)
+        fit = Fit(mechanism, lengths, regions, q, room)
         found = [fit.solve(x, stiffness_factor, preload) for x in fit.starts(stiffness_factor)]
         return fit.mechanism_of(min(found, key=lambda one: one[1])[0])
 
@@ -149,13 +163,14 @@ def ordinary(
     )
 
 
-def _lengths(mechanism: Mechanism, given: float | Mapping[str, float] | None) -> dict[str, float]:
+def _lengths(mechanism: Mechanism, given: Amount | Mapping[str, Amount] | None) -> dict[str, float]:
     names = tuple(spring.name for spring in mechanism.springs)
     if not names:
         raise InputError(f"mechanism '{mechanism.name}' has no springs that could have a free length")
     if given is None:
         return {spring.name: spring.free_length for spring in lines(mechanism, FREE_LENGTHS)}
-    lengths = dict(given) if isinstance(given, Mapping) else dict.fromkeys(names, float(given))
+    each = given if isinstance(given, Mapping) else dict.fromkeys(names, given)
+    lengths = {name: float(value) for name, value in each.items()}  # the options hold numbers
     for name, value in lengths.items():
         if name not in names:
             raise InputError(Fault(("free_length",), f"there is no spring {nearest(name, names)}", names))

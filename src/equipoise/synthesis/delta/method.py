@@ -20,10 +20,11 @@ from ...model.arrays import Array
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Body, Joint, Mechanism
 from ...model.rotation import to_rpy
+from ...model.units import Amount
 from ..design import Design
 from ..given import number
 from ..method import Method
-from ..options import MethodOptions, Number, option, takes
+from ..options import MethodOptions, option, takes
 from .legs import DeltaLeg, NotDelta, delta_legs
 from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
 from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
@@ -51,30 +52,30 @@ class DeltaOptions(MethodOptions):
     """
 
     variant: Variant = option("full", "text", "how many springs per leg, and for what (default full)", VARIANTS)
-    AV: Number = option(0.25, "length", "A to where spring 7 is attached to link 2 (default 250 mm)")
-    AW: Number = option(0.3, "length", "A to where spring 7 is attached above it (default 300 mm)")
-    spring_7: Number = option(0.0, "mass", "of each spring 7 (default 0)")
-    share_7: Number = option(0.5, "share", "of the mass of spring 7 that counts at V (default 50 %)")
-    link_2p: Number = option(0.0, "mass", "full: of each link 2' (default 0)")
-    BF: Number | None = option(None, "length", "full: B to F, the guide's half height (default 100 mm)")
-    CS: Number | None = option(None, "length", "full: C to where spring 10 is attached to the rod (default 100 mm)")
-    FU: Number | None = option(None, "length", "full: F to where spring 11 is attached to link 8 (default 80 mm)")
-    FT: Number | None = option(None, "length", "full: F to where spring 11 is attached above it (default 120 mm)")
-    FG8: Number | None = option(None, "length", "full: F to the mass centre of link 8 (default 50 mm)")
-    link_8: Number | None = option(None, "mass", "full: of each link 8 (default 0)")
-    link_9: Number | None = option(None, "mass", "full: of each slider 9 (default 0)")
-    frame: Number | None = option(None, "mass", "full: of each frame 12 (default 0)")
-    spring_10: Number | None = option(None, "mass", "full: of each spring 10 (default 0)")
-    spring_11: Number | None = option(None, "mass", "full: of each spring 11 (default 0)")
-    share_10: Number | None = option(None, "share", "full: of the mass of spring 10 that counts at S (default 50 %)")
-    share_11: Number | None = option(None, "share", "full: of the mass of spring 11 that counts at U (default 50 %)")
+    AV: Amount = option(0.25, "length", "A to where spring 7 is attached to link 2 (default 250 mm)")
+    AW: Amount = option(0.3, "length", "A to where spring 7 is attached above it (default 300 mm)")
+    spring_7: Amount = option(0.0, "mass", "of each spring 7 (default 0)")
+    share_7: Amount = option(0.5, "share", "of the mass of spring 7 that counts at V (default 50 %)")
+    link_2p: Amount = option(0.0, "mass", "full: of each link 2' (default 0)")
+    BF: Amount | None = option(None, "length", "full: B to F, the guide's half height (default 100 mm)")
+    CS: Amount | None = option(None, "length", "full: C to where spring 10 is attached to the rod (default 100 mm)")
+    FU: Amount | None = option(None, "length", "full: F to where spring 11 is attached to link 8 (default 80 mm)")
+    FT: Amount | None = option(None, "length", "full: F to where spring 11 is attached above it (default 120 mm)")
+    FG8: Amount | None = option(None, "length", "full: F to the mass centre of link 8 (default 50 mm)")
+    link_8: Amount | None = option(None, "mass", "full: of each link 8 (default 0)")
+    link_9: Amount | None = option(None, "mass", "full: of each slider 9 (default 0)")
+    frame: Amount | None = option(None, "mass", "full: of each frame 12 (default 0)")
+    spring_10: Amount | None = option(None, "mass", "full: of each spring 10 (default 0)")
+    spring_11: Amount | None = option(None, "mass", "full: of each spring 11 (default 0)")
+    share_10: Amount | None = option(None, "share", "full: of the mass of spring 10 that counts at S (default 50 %)")
+    share_11: Amount | None = option(None, "share", "full: of the mass of spring 11 that counts at U (default 50 %)")
     printed: bool | None = option(
         None, "flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"
     )
-    heights: Sequence[Number] | None = option(
+    heights: Sequence[Amount] | None = option(
         None, "length", "axis, optimum: LOW,HIGH of the platform below the base", many=True
     )
-    reach: Number = option(0.1, "length", "axis, optimum: half width of the workspace (default 100 mm)")
+    reach: Amount = option(0.1, "length", "axis, optimum: half width of the workspace (default 100 mm)")
     objective: Objective = option(
         "peak", "text", "optimum: what is least over the workspace (default peak)", OBJECTIVES
     )

@@ -19,12 +19,13 @@ from ...model.arrays import Array
 from ...model.elements import Spring
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
+from ...model.units import Amount
 from ..arms.chain import Chain, ChainLink, chain, reasons
 from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method
 from ..mounts import Mounts
-from ..options import MethodOptions, Number, option, takes
+from ..options import MethodOptions, option, takes
 from ..products import Product, fill
 from . import from_ground, two_links
 from .from_ground import fewest_springs
@@ -56,19 +57,19 @@ class NoAuxiliaryOptions(MethodOptions):
 
     layout: str | None = option(None, "text", "of two links (Fig. 5), or all springs from the ground", CHOICES)
     springs: int | None = option(None, "whole", "2, or 3 with k1 as in (14) (default: as few as do), of layouts a to d")
-    k2: Number | None = option(None, "stiffness", "of the spring from the ground to link 2")
-    a2: Number | None = option(None, "length", "its height above the shoulder")
-    b2: Number | None = option(None, "length", "its end on link 2, from the elbow")
-    k12: Number | None = option(None, "stiffness", "of the spring from link 1 to link 2")
-    a12: Number | None = option(None, "length", "its end on link 2, from the elbow")
-    b12: Number | None = option(None, "length", "its end on link 1, from the shoulder")
-    k1: Number | None = option(None, "stiffness", "of the third spring, from the ground to link 1")
-    a1: Number | None = option(None, "length", "its height above the shoulder")
-    b1: Number | None = option(None, "length", "its end on link 1, from the shoulder")
+    k2: Amount | None = option(None, "stiffness", "of the spring from the ground to link 2")
+    a2: Amount | None = option(None, "length", "its height above the shoulder")
+    b2: Amount | None = option(None, "length", "its end on link 2, from the elbow")
+    k12: Amount | None = option(None, "stiffness", "of the spring from link 1 to link 2")
+    a12: Amount | None = option(None, "length", "its end on link 2, from the elbow")
+    b12: Amount | None = option(None, "length", "its end on link 1, from the shoulder")
+    k1: Amount | None = option(None, "stiffness", "of the third spring, from the ground to link 1")
+    a1: Amount | None = option(None, "length", "its height above the shoulder")
+    b1: Amount | None = option(None, "length", "its end on link 1, from the shoulder")
     direction: Sequence[float] | None = option(None, "number", "x,y,z of link 2 in its frame: where h2 > 0", many=True)
-    k: Number | None = option(None, "stiffness", "layout ground: of the springs on the last link")
-    b: Number | None = option(None, "length", "layout ground: their ends on it, from its joint")
-    height: Number | None = option(None, "length", "layout ground: how far apart they are on the ground")
+    k: Amount | None = option(None, "stiffness", "layout ground: of the springs on the last link")
+    b: Amount | None = option(None, "length", "layout ground: their ends on it, from its joint")
+    height: Amount | None = option(None, "length", "layout ground: how far apart they are on the ground")
     share: Given = option(None, "share", "layout ground: end on another link as a share of its length", each=True)
 
 

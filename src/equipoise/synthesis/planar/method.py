@@ -19,11 +19,12 @@ import numpy as np
 from ...model.errors import EquipoiseError, Fault, InfeasibleError, InputError
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress
+from ...model.units import Amount
 from ...model.validate import whole_number
 from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method
-from ..options import MethodOptions, Number, option, takes
+from ..options import MethodOptions, option, takes
 from .arm import PlanarArm, obstacles
 from .criteria import failures
 from .exclusion import Layout, prove
@@ -54,13 +55,13 @@ class PlanarOptions(MethodOptions):
     layout: Sequence[str] | None = option(
         None, "names", "13,14,24: the links of each spring, ground is 1 (default 13,14,..,1n,2n)"
     )
-    limit: Number | None = option(None, "length", "of attachments from their joints (default: as close as is found)")
+    limit: Amount | None = option(None, "length", "of attachments from their joints (default: as close as is found)")
     stiffness: Given = option(None, "stiffness", "of a spring: stiffness.13, stiffness.14_1", each=True)
     a: Given = option(
         None, "length", "of a spring, along its lower link from the far joint; the ground's is up", each=True
     )
     b: Given = option(None, "length", "of a spring, along its upper link from the near joint", each=True)
-    stock: Sequence[Number] | None = option(None, "stiffness", "K,K,...: stiffnesses to choose from", many=True)
+    stock: Sequence[Amount] | None = option(None, "stiffness", "K,K,...: stiffnesses to choose from", many=True)
     seed: int = option(0, "whole", "of the random starts (default 0)")
 
 

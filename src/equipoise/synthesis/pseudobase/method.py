@@ -17,12 +17,13 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import Fault, InputError, nearest
 from ...model.mechanism import Mechanism
+from ...model.units import Amount
 from ..arms.moments import NOTHING, Moment, Segment, moments, segments, slide_faults
 from ..design import Design
 from ..given import Given, number, numbers, spring_sizes, vectors
 from ..method import Method
 from ..mounts import Mounts
-from ..options import MethodOptions, Number, option, takes
+from ..options import MethodOptions, option, takes
 from .parallelograms import Builder, Module, mobility
 
 
@@ -49,7 +50,7 @@ class PseudobaseOptions(MethodOptions):
     l_CA: Given = option(None, "length", "from C up to the spring's end on the pseudobase", each=True)
     l_CB: Given = option(None, "length", "from C to its end on the link; two of the three at most", each=True)
     centre: Given = option(None, "length", "x,y,z of C in the link's frame", each=True, many=True)
-    height: Number | None = option(
+    height: Amount | None = option(
         None, "length", "of the auxiliary chain above the arm (default a tenth of the reach)"
     )
     auxiliary: Given = option(0.0, "share", "mass of an auxiliary link as a share of its link's, such as 5%", each=True)
