@@ -23,7 +23,7 @@ import equipoise as eq
 from equipoise.energy.potential import Potential
 from equipoise.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
 from equipoise.io import mjcf
-from equipoise.reproduce.cho2012 import shoulder
+from equipoise.reproduce.cho2012 import arm as shoulder
 from equipoise.synthesis import METHODS
 from equipoise.synthesis.bevel import differential as d
 from equipoise.synthesis.bevel.shoulder import find

@@ -6,6 +6,7 @@ the platform, spring 11 the guide, and spring 7 all that hangs on link 2.
 
 axis: one spring 7 per leg (section 6, Eqs. 14-15), best where the platform moves on the vertical axis, and exact there
 if AB = CD and the axes of E are below those of A. optimum: the same springs, chosen over a stated workspace instead.
+rocker: a two-axis rocker by itself, with the guide and springs 10 and 11 (section 4).
 """
 
 from __future__ import annotations
@@ -20,20 +21,23 @@ from ...arrays import Array
 from ...errors import Fault, InputError
 from ...mechanism import Body, Joint, Mechanism
 from ...rotation import to_rpy
+from ..bevel.shoulder import find
 from ..design import Design
 from ..method import Method, Parameter
+from . import two_axis
 from .legs import DeltaLeg, NotDelta, delta_legs
-from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
+from .rocker import EQUATION_10, Guide, TwoAxisRocker, rocker_spring, vec3
 from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 
-Variant = Literal["full", "axis", "optimum"]
+Variant = Literal["full", "axis", "optimum", "rocker"]
 VARIANTS: tuple[str, ...] = get_args(Variant)
+GUIDED = ("full", "rocker")  # those with a guide
 
 
 def design(
     mechanism: Mechanism,
     *,
-    variant: Variant = "full",
+    variant: Variant | None = None,
     AV: float = 0.25,
     AW: float = 0.3,
     spring_7: float = 0.0,
@@ -49,7 +53,7 @@ def design(
     """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes.
 
     Args:
-        variant: full, axis or optimum; see the module.
+        variant: full, axis or optimum; rocker; see the module. By default what suits the mechanism, full or rocker.
         AV, AW: where spring 7 is attached [m]: V on link 2, W above A.
         spring_7: its mass [kg], `share_7` of it at V.
         link_2p: mass of each link 2' [kg], its mass centre half way along; full only.
@@ -57,11 +61,13 @@ def design(
             middle half of what the rods allow.
         reach: of optimum: the platform within +-reach of the axis, both ways [m]; axis is judged there too.
         objective: of optimum: rms or peak torque over the workspace.
-        guide: the fields of `rocker.Guide`; full only.
+        guide: the fields of `rocker.Guide`; full and rocker only.
 
     Raises:
         InputError: a value out of range, or a workspace that the robot does not reach.
     """
+    if variant is None:
+        variant = "rocker" if _is_rocker(mechanism) else "full"
     if variant not in VARIANTS:
         raise InputError(Fault(("variant",), f"there is no '{variant}'", VARIANTS))
     for name, value in (("AV", AV), ("AW", AW)):
@@ -69,16 +75,22 @@ def design(
             raise InputError(Fault((name,), f"must be more than 0 m, found {value:g}"))
     valid = tuple(f.name for f in fields(Guide))
     for name in guide:
-        if name not in valid or variant != "full":
+        if name not in valid or variant not in GUIDED:
             raise InputError(
-                Fault((name,), f"variant '{variant}' has no such option", valid if variant == "full" else ())
+                Fault((name,), f"variant '{variant}' has no such option", valid if variant in GUIDED else ())
             )
+    if variant == "rocker":
+        shoulder, reasons = find(mechanism.with_springs(()))
+        if shoulder is None:
+            raise InputError(f"'{mechanism.name}' is no two-axis rocker: {'; '.join(reasons)}")
+        parts = Guide(**guide)
+        made = two_axis.balanced(mechanism, shoulder, parts)
+        return Design.of(made, "delta", {"variant": variant, **_used(parts)})
     common: dict[str, Any] = {"variant": variant, "AV": AV, "AW": AW, "spring_7": spring_7, "share_7": share_7}
     if variant == "full":
         parts = Guide(**guide)
         made = full(mechanism, parts, AV, AW, spring_7, share_7, link_2p)
-        used = {f.name: getattr(parts, f.name) for f in fields(parts)}
-        return Design.of(made, "delta", {**common, "link_2p": link_2p, **used})
+        return Design.of(made, "delta", {**common, "link_2p": link_2p, **_used(parts)})
     goal: Goal = "axis" if variant == "axis" else objective
     box, found = one_per_leg(
         mechanism, goal, AV=AV, AW=AW, spring_7=spring_7, share_7=share_7, heights=heights, reach=reach,
@@ -112,8 +124,19 @@ def applies(mechanism: Mechanism) -> list[str]:
     try:
         delta_legs(mechanism)
     except (NotDelta, InputError) as why:
-        return [str(why)]
+        return [] if _is_rocker(mechanism) else [str(why)]
     return []
+
+
+def _is_rocker(mechanism: Mechanism) -> bool:
+    """Whether it is a two-axis rocker that is not geared already."""
+    if mechanism.loops or mechanism.couplings or not any(mechanism.gravity):
+        return False
+    return find(mechanism.with_springs(()))[0] is not None
+
+
+def _used(guide: Guide) -> dict[str, Any]:
+    return {f.name: getattr(guide, f.name) for f in fields(guide)}
 
 
 def full(
@@ -136,7 +159,17 @@ def full(
         ]
         angle = tuple(zip(leg.joints, leg.signs, strict=True))
         rocker = TwoAxisRocker(
-            f"frame 12{mark}", (0.0, 0.0, 0.0), three, leg.R_3, angle, leg.zero_3, four, leg.C, leg.moment_4
+            f"frame 12{mark}",
+            (0.0, 0.0, 0.0),
+            three,
+            leg.R_3,
+            angle,
+            leg.zero_3,
+            four,
+            leg.C,
+            leg.moment_4,
+            leg.moment_3,
+            leg.misprint,
         )
         bodies += rocker.bodies(guide, mark)
         joints += rocker.joints(guide, mark)
@@ -165,12 +198,14 @@ def _legs(mechanism: Mechanism) -> tuple[tuple[DeltaLeg, ...], str]:
 
 METHOD = Method(
     "delta",
-    "a DELTA robot: full, exact with three springs per leg and a guide; or one spring per leg, approximate",
+    "a DELTA robot: exact with three springs per leg and a guide, or one per leg, approximate; or a two-axis rocker",
     "Simionescu, Ciupitu and Ionita, Mechanism and Machine Theory 87 (2015), doi 10.1016/j.mechmachtheory.2014.11.008",
     applies,
     design,
     {
-        "variant": Parameter("text", "how many springs per leg, and for what (default full)", VARIANTS),
+        "variant": Parameter(
+            "text", "how many springs per leg, and for what (default full); rocker: two axes alone", VARIANTS
+        ),
         "AV": Parameter("length", "A to where spring 7 is attached to link 2 (default 250 mm)"),
         "AW": Parameter("length", "A to where spring 7 is attached above it (default 300 mm)"),
         "spring_7": Parameter("mass", "of each spring 7 (default 0)"),
@@ -188,7 +223,10 @@ METHOD = Method(
         "spring_11": Parameter("mass", "full: of each spring 11 (default 0)"),
         "share_10": Parameter("share", "full: of the mass of spring 10 that counts at S (default 50 %)"),
         "share_11": Parameter("share", "full: of the mass of spring 11 that counts at U (default 50 %)"),
-        "printed": Parameter("flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"),
+        "m3Q": Parameter("mass", "full: of link 3's bar that hangs at Q, on the slider (default 0)"),
+        "equation_10": Parameter(
+            "text", "full: spring 11 exact, by Eq. (10) mended (exact if BF = 2 CS), or literally", EQUATION_10
+        ),
         "heights": Parameter("length", "axis, optimum: LOW,HIGH of the platform below the base", many=True),
         "reach": Parameter("length", "axis, optimum: half width of the workspace (default 100 mm)"),
         "objective": Parameter("text", "optimum: what is least over the workspace (default peak)", OBJECTIVES),
