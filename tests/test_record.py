@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from equipoise.errors import InfeasibleError, InputError
-from equipoise.reproduce import Map, Plot, Row, reproduce
-from equipoise.reproduce.record import collect, half_unit, spread, vector
+from equipoise.reproduce import Map, Plot, Reproduction, Row, reproduce
+from equipoise.reproduce.record import half_unit, spread, vector
 
 
 @pytest.mark.parametrize(("printed", "half"), [("0.13", 0.005), ("105.92", 0.005), ("20", 0.5), ("1.590e3", 0.5)])
@@ -78,7 +78,7 @@ def test_a_section_that_cannot_be_computed_fails_by_its_name():
         raise InfeasibleError("none were found")
         yield
 
-    (row,) = collect("paper", springs)
+    (row,) = Reproduction.of("paper", "citation", [springs], []).rows
     assert row.verdict == "FAILS"
     assert "The springs of Table 1." in row.failure
     assert "none were found" in row.failure

@@ -20,7 +20,7 @@ from ..errors import InfeasibleError
 from ..kinematics.motion import Move, follow
 from ..mechanism import Body, Joint, Mechanism, Workspace
 from ..synthesis import Design, design
-from .record import Picture, Plot, Reproduction, Row, collect, proved
+from .record import Picture, Plot, Reproduction, Row, proved
 
 PAPER = "lenzo2017"
 CITATION = (
@@ -75,7 +75,7 @@ def motion() -> Array:
 def reproduction() -> Reproduction:
     """The equations in numbers, the layouts, and what is refused."""
     sections = (_one_link, _two_hinges, _moments, _golden, _exact, _needed, _conditions, _energies)
-    return Reproduction(PAPER, CITATION, collect(PAPER, *sections), (_figure(), *_drawings()))
+    return Reproduction.of(PAPER, CITATION, sections, (_figure, _drawings))
 
 
 def one_link() -> Design:
@@ -250,11 +250,12 @@ def _largest(balance: Balance) -> float:
     return float(balance.residual.max.max())
 
 
-def _figure() -> Plot:
+def _figure() -> Iterator[Plot]:
+    """The energies over the motion."""
     found = balanced(layout="b", **CHOSEN).mechanism
     state = Potential(found)(motion())
     springs = {f"spring {spring.name}": state.springs[:, i] for i, spring in enumerate(found.springs)}
-    return Plot(
+    yield Plot(
         "energy",
         "Lenzo (2017), layout b: energies while shoulder and elbow move",
         "time [s]",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from math import isnan
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,11 @@ Verdict = Literal["agrees", "golden", "differs", "unprinted", "erratum", "refute
 Against = Literal["differs", "unprinted", "erratum", "refuted"]
 """Why the print does not hold: a difference with a reason; data that the paper does not print; a print that is wrong,
 proved here; a claim that is refuted."""
+
+T = TypeVar("T")
+
+BROKEN = (EquipoiseError, ArithmeticError, LookupError, ValueError, TypeError, AssertionError)
+"""What a section may raise when the source is broken, or finds nothing where the paper has something."""
 
 EXACT = 1e-9  # of a value, or absolute where it is less than 1: how near an exact number has to be
 
@@ -154,19 +159,6 @@ class Row:
         }
 
 
-def collect(paper: str, *sections: Callable[[], Iterable[Row]]) -> tuple[Row, ...]:
-    """The rows of all sections; one that cannot be computed gives a row that fails."""
-    rows: list[Row] = []
-    for section in sections:
-        try:
-            rows += section()
-        except (EquipoiseError, ArithmeticError) as error:
-            whole = getattr(section, "func", section)  # of a partial
-            what = (whole.__doc__ or whole.__name__).splitlines()[0]
-            rows.append(Row(paper, what, None, float("nan"), golden=0.0, note=str(error)))
-    return tuple(rows)
-
-
 def proved(paper: str, item: str, balance: Balance, published: str | None = None) -> Row:
     """The largest Fourier coefficient of the energy that varies, as a share of gravity's energy: of exact springs 0."""
     certificate = balance.certificate
@@ -245,6 +237,30 @@ class Reproduction:
     citation: str
     rows: tuple[Row, ...]
     figures: tuple[Figure, ...] = ()
+
+    @staticmethod
+    def of(
+        paper: str,
+        citation: str,
+        sections: Sequence[Callable[[], Iterable[Row]]],
+        drawings: Sequence[Callable[[], Iterable[Figure]]],
+    ) -> Reproduction:
+        """All sections and drawings; one that cannot be computed gives a row that fails."""
+        failed: list[Row] = []
+
+        def guarded(makers: Sequence[Callable[[], Iterable[T]]]) -> list[T]:
+            made: list[T] = []
+            for maker in makers:
+                try:
+                    made += maker()
+                except BROKEN as error:
+                    whole = getattr(maker, "func", maker)  # of a partial
+                    what = (whole.__doc__ or whole.__name__).splitlines()[0]
+                    failed.append(Row(paper, what, None, float("nan"), golden=0.0, note=repr(error)))
+            return made
+
+        rows, figures = guarded(sections), guarded(drawings)
+        return Reproduction(paper, citation, (*rows, *failed), tuple(figures))
 
 
 def vector(paper: str, item: str, printed: Sequence[str], computed: Sequence[float] | Array, **more: Any) -> list[Row]:

@@ -35,6 +35,7 @@ def figures() -> Iterator[Plot]:
 
 
 def maps() -> tuple[Map, ...]:
+    """The holding torques over the hemisphere."""
     before, after, soft = map(_over_hemisphere, (arm(), balanced().mechanism, scaled(1 - SOFT)))
     pictures = {
         "torque": ("without springs and balanced", {"no springs": before, "balanced": after}),

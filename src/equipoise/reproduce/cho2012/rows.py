@@ -28,7 +28,7 @@ from ...synthesis.bevel.differential import (
     stiffness,
     stretch_squared,
 )
-from ..record import Reproduction, Row, collect, half_unit, proved, spread
+from ..record import Reproduction, Row, half_unit, proved, spread
 from .figures import figures, maps
 from .shoulder import GRID, JOINTS, SOFT, TABLE_1, B, G, H, L, M, arm, balanced, scaled
 
@@ -46,7 +46,7 @@ NODES = 64  # of the quadrature over each joint's range
 def reproduction() -> Reproduction:
     """Everything the paper prints."""
     sections = (_differential, _stiffness, _ends, _closed_forms, _constant, _table_1, _errors, _ratios)
-    return Reproduction(PAPER, CITATION, collect(PAPER, *sections), (*figures(), *maps()))
+    return Reproduction.of(PAPER, CITATION, sections, (figures, maps))
 
 
 def _weight() -> float:
@@ -85,7 +85,7 @@ def _stiffness() -> Iterator[Row]:
         f"the rounding of the printed m, l, b, h moves k by up to {spread(of, inputs):.2g} kN/m: m = {other:.2f} kg "
         f"would give {of(other, *map(float, inputs[1:])):.3f}; g would have to be {low:.2f} to {high:.2f} m/s^2"
     )
-    yield Row(PAPER, "k = m g l / (2 b h) (23), Sec. 4.1", K, k / 1e3, "kN/m", spread(of, inputs),
+    yield Row(PAPER, "k = m g l / (2 b h) (23), Sec. 4.1", K, of(*map(float, inputs)), "kN/m", spread(of, inputs),
               golden=_true_stiffness() / 1e3, note=note)  # fmt: skip
     springs = [
         (arrangement, spring) for arrangement in ARRANGEMENTS for spring in balanced(arrangement).mechanism.springs

@@ -12,10 +12,11 @@ from ...balance import check
 from ...energy.blocks import StiffnessBlocks
 from ...energy.planar import Installation
 from ...energy.potential import Potential
+from ...synthesis import design
 from ...synthesis.planar.criteria import failures, sign_failures
 from ...synthesis.planar.installing import A, B
 from ...synthesis.planar.layouts import labels
-from ..record import Plot, Reproduction, Row, collect, proved, spread
+from ..record import Plot, Reproduction, Row, proved, spread
 from .arm import arm, balanced, completed, motion, planar, printed, with_springs
 from .layouts import equivalent, fewest_springs, smallest_span
 from .tables import CASES, POSES, TABLE_4, TIMES, Case
@@ -26,6 +27,7 @@ CITATION = (
     'articulated manipulators", Mechanism and Machine Theory 74 (2014)'
 )
 G = 9.81  # [m/s^2]
+LONGEST = 0.5  # [m]
 
 # over all poses, by the certificate's series and by hand: mean, least and most energy [J] and residual [N m] of the
 # rounded table, and the energy [J] of the completed one
@@ -35,8 +37,8 @@ GOLDEN = {"a": ("20.58", "20.52", "20.63", "0.0554", "20.557"), "b": ("27.24", "
 def reproduction() -> Reproduction:
     """Everything the paper prints."""
     cases = [partial(_table_5, case) for case in CASES]
-    sections = (_blocks, equivalent, fewest_springs, smallest_span, _unbalanced, *cases, _distal_joint)
-    return Reproduction(PAPER, CITATION, collect(PAPER, *sections), tuple(_figure_10(case) for case in CASES))
+    sections = (_blocks, equivalent, fewest_springs, smallest_span, _unbalanced, *cases, _distal_joint, _elongation)
+    return Reproduction.of(PAPER, CITATION, sections, [partial(_figure_10, case) for case in CASES])
 
 
 def _blocks() -> Iterator[Row]:
@@ -157,6 +159,15 @@ def _distal_joint() -> Iterator[Row]:
     )
 
 
+def _elongation() -> Iterator[Row]:
+    """A limit on the springs' elongation, section 8."""
+    found = design(arm(), "planar", longest=LONGEST).balance
+    longest = max(use.max_length for use in found.use)
+    yield Row(PAPER, f"longest spring of 13,14,24 where {LONGEST:g} m are allowed", None, longest, "m",
+              golden=f"<= {LONGEST:g}")  # fmt: skip
+    yield proved(PAPER, f"13,14,24 with springs of at most {LONGEST:g} m", found)
+
+
 _MEAN = "over all poses, gravity counted from the first joint"
 _COMPLETED = (
     "constant: from the printed stiffnesses and one or two printed lengths, the others by the design equations "
@@ -193,10 +204,11 @@ def _length(one: Installation, which: int) -> float:
     return float(abs(one.a if which == A else one.b))
 
 
-def _figure_10(case: Case) -> Plot:
+def _figure_10(case: Case) -> Iterator[Plot]:
+    """Fig. 10."""
     state = Potential(balanced(case))(motion())
     poses = ", then ".join(f"({', '.join(f'{angle}' for angle in pose)})" for pose in POSES)
-    return Plot(
+    yield Plot(
         f"fig10{case.letter}",
         f"Lee and Chen (2014), Fig. 10({case.letter}): energies over the motion of section 8",
         "moves done",

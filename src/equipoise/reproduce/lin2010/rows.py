@@ -15,7 +15,7 @@ from ...kinematics import Tree
 from ...mechanism import Mechanism
 from ...synthesis.pseudobase.moments import Lump, Moment, Segment, moments, segments
 from ...synthesis.pseudobase.parallelograms import mobility
-from ..record import Plot, Reproduction, Row, collect, proved, spread, vector
+from ..record import Plot, Reproduction, Row, proved, spread, vector
 from .arm import TIMES, arm, balanced, motion
 from .tables import TABLE_2, TABLE_3, TABLE_4, point
 
@@ -39,7 +39,7 @@ GOLDEN = {
 def reproduction() -> Reproduction:
     """Everything the paper prints."""
     sections = (_mobility, _bare_moments, _table_2, _table_3, _table_4, _energies, _spring_3)
-    return Reproduction(PAPER, CITATION, collect(PAPER, *sections), (_figure_9(),))
+    return Reproduction.of(PAPER, CITATION, sections, (_figure_9,))
 
 
 def _mobility() -> Iterator[Row]:
@@ -216,9 +216,10 @@ def _over_motion(mechanism: Mechanism) -> State:
     return Potential(mechanism)(motion())
 
 
-def _figure_9() -> Plot:
+def _figure_9() -> Iterator[Plot]:
+    """Fig. 9."""
     state = _over_motion(balanced().mechanism)
-    return Plot(
+    yield Plot(
         "fig9",
         "Lin, Shieh and Chen (2010), Fig. 9: energies over the motion of Eq. (26)",
         "time [s]",

@@ -27,7 +27,7 @@ def diagrams() -> Iterator[Plot]:
         yield Plot(name, title, "theta_11 [rad]", "moment [N m]", theta, series, note)
 
 
-def residual_map() -> Map:
+def residual_map() -> Iterator[Map]:
     """The largest residual of the three actuators over a plane."""
     side = np.linspace(-0.25, 0.25, 41)
     x, y = np.meshgrid(side, side)
@@ -37,4 +37,4 @@ def residual_map() -> Map:
         label: np.abs(Potential(one.mechanism)(u).torque).max(axis=1).reshape(x.shape) for label, one in found.items()
     }
     title = "Largest residual moment of the three actuators, platform 0.65 m below the base"
-    return Map("residual", title, "x [m]", "y [m]", "moment [N m]", side, side, panels)
+    yield Map("residual", title, "x [m]", "y [m]", "moment [N m]", side, side, panels)

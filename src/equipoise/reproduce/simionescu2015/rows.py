@@ -10,7 +10,7 @@ import numpy as np
 
 from ...energy.potential import Potential
 from ...kinematics import Tree
-from ..record import Reproduction, Row, collect
+from ..record import Reproduction, Row
 from .example import (
     ASSUMED,
     AV,
@@ -44,7 +44,7 @@ REACHES = {0.05: ("4.31", "40.96"), 0.1: ("9.53", "45.70"), 0.25: ("46.0", "53.0
 def reproduction() -> Reproduction:
     """Everything the paper prints that can be computed, and what is wrong in it."""
     sections = (rocker, two_axes, whole_robot, bar, _kinematics, _example, _sensitivity, _paths, _workspaces)
-    return Reproduction(PAPER, CITATION, collect(PAPER, *sections), (*diagrams(), residual_map()))
+    return Reproduction.of(PAPER, CITATION, sections, (diagrams, residual_map))
 
 
 def _kinematics() -> Iterator[Row]:

@@ -9,14 +9,18 @@ given stiffnesses or attachments, a limit on the attachments.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
-from math import isinf, log
+from dataclasses import replace
+from itertools import islice, product
+from math import inf, isfinite, isinf, log
 from typing import Any
 
 import numpy as np
 
-from ...energy.planar import PlanarArm, obstacles
+from ...arrays import Array, Complexes
+from ...energy.equivalent import exchanged
+from ...energy.planar import Installation, PlanarArm, obstacles
 from ...errors import EquipoiseError, Fault, InfeasibleError, InputError
+from ...kinematics import Tree, sample
 from ...mechanism import Mechanism
 from ...validate import whole_number
 from ..design import Design
@@ -25,9 +29,12 @@ from ..method import Method, Parameter
 from ..problem import Progress
 from .criteria import failures
 from .exclusion import Layout, prove
-from .installing import STIFFNESS, A, B, Equations, Fixed, Solution, solve, upward
+from .installing import STIFFNESS, A, B, Fixed, Solution, solve, upward
 from .layouts import Excluded, default_layout, labels, name
 
+ENDS = ("lower", "upper")
+POSES, CORNERS = 256, 1024  # random and extreme ones that springs are kept short in
+NEAR = 1e-6  # relative: how much longer than allowed is not
 STOCK = 200  # choices from stock that are tried
 NEAREST = 4  # stiffnesses in stock to choose from, for each spring
 
@@ -41,6 +48,8 @@ def design(
     a: Given = None,
     b: Given = None,
     stock: Sequence[float] | None = None,
+    longest: float | None = None,
+    exchange: str | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Design:
@@ -56,6 +65,8 @@ def design(
             join the same links. `a` is counted from the joint of the lower link along that link, the ground's upwards;
             `b` from the joint of the upper link along it; negative values lie on the other side.
         stock: the stiffnesses to choose from [N/m].
+        longest: [m] that a spring gets in any pose.
+        exchange: ``14:lower`` for two springs 14 as 14 and 24 in the end, Eq. (28a), ``14:upper`` as 14 and 13, (28b).
 
     Raises:
         InfeasibleError: the layout balances no such arm, or no springs were found; the message says which.
@@ -73,12 +84,19 @@ def design(
         raise InfeasibleError(f"springs {name(chosen)} balance no such arm: {why}")
     if progress is not None:
         progress("solving the design equations", 0.0)
-    found = solve(arm, chosen, limit, fixed, seed)
+    reach = inf if longest is None else number("longest", longest, positive=True)
+    poses = None if longest is None else _directions(bare, arm)
+    found = solve(arm, chosen, limit, fixed, seed, longest=reach, directions=poses)
     if found is not None and stock is not None:
         found = _from_stock(found, [number("stock", k, positive=True) for k in stock], seed, progress)
     if found is None:
-        raise InfeasibleError(_none(chosen, limit, fixed, stock))
-    designed = Design.of(bare.with_springs(arm.springs(found.springs)), "planar", _free(found, stock, seed))
+        raise InfeasibleError(_none(chosen, limit, fixed, stock, longest))
+    springs = found.springs if exchange is None else _exchanged(found, exchange)
+    free = {**_free(found, springs, stock, seed), "longest": longest, "exchange": exchange}
+    designed = Design.of(bare.with_springs(arm.springs(springs)), "planar", free)
+    used = max(use.max_length for use in designed.balance.use)
+    if used > reach * (1 + NEAR):
+        raise InfeasibleError(f"a spring of {name(chosen)} gets {used:.6g} m long, more than the {reach:g} m allowed")
     if not designed.balance.exact:
         raise EquipoiseError(
             f"the springs found for {name(chosen)} do not balance: a fault of the method, please report"
@@ -144,15 +162,59 @@ def _from_stock(free: Solution, stock: Sequence[float], seed: int, progress: Pro
     for number_, chosen in enumerate(tried):
         if progress is not None:
             progress("choosing from stock", number_ / len(tried))
-        held = Equations(of.arm, of.layout, of.limit, {**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
+        held = replace(of, fixed={**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
         found = held.solve(seed, starts=4, near=free.x)
         if found is not None:
             return found
     return None
 
 
-def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> str:
+def _directions(mechanism: Mechanism, arm: PlanarArm) -> Complexes:
+    """(poses, n) where the links point, as unit complex numbers: where springs are longest, and at random poses.
+
+    A spring is longest with its joints at the ends of their ranges, or its links in line.
+    """
+    tree = Tree.of(mechanism)
+    bodies = [tree.index[link] for link in arm.links]
+
+    def at(q: Array) -> Complexes:
+        turned = arm.R[0] @ tree.poses(q).R[:, bodies] @ np.swapaxes(arm.R, 1, 2)
+        return arm.u * np.exp(1j * np.arctan2(turned[..., 1, 0], turned[..., 0, 0]))
+
+    little = 1e-3  # [rad] shows which way a joint counts
+    rest, bent = (np.angle(u[..., 1:] / u[..., :-1]) for u in (at(np.zeros((1, tree.n))), at(little * np.eye(tree.n))))
+    ways = np.sign(np.angle(np.exp(1j * (np.diagonal(bent) - rest[0]))))
+    line = np.append(np.pi / 2, np.zeros(tree.n - 1)) - rest[0]  # the ground's ends are above the first joint
+    aligned = np.stack([ways * line, ways * (line + np.pi)], axis=1)
+    aligned = (aligned + np.pi) % (2 * np.pi) - np.pi
+    rows = tree.coordinate_rows
+    limits = zip(tree.lower[rows], tree.upper[rows], aligned, strict=True)
+    extremes = [[q for q in (low, high, *flat) if low <= q <= high and isfinite(q)] for low, high, flat in limits]
+    corners = np.array(list(islice(product(*extremes), CORNERS)))
+    return at(np.concatenate([corners, sample(tree, POSES)]))
+
+
+def _exchanged(found: Solution, text: str) -> tuple[Installation, ...]:
+    """The springs with two of them exchanged, Eqs. (28a, b).
+
+    Raises:
+        InputError: no two springs between the links named.  InfeasibleError: no two springs have this effect.
+    """
+    pair, _, end = text.partition(":")
+    arm = found.equations.arm
+    links = _pair(pair, arm)
+    two = [spring for spring in found.springs if (spring.i, spring.k) == links]
+    if len(two) != 2 or end not in ENDS:
+        asked = f"expected two springs of the layout and {' or '.join(ENDS)}, such as 14:lower, found '{text}'"
+        raise InputError(Fault(("exchange",), asked))
+    rest = [spring for spring in found.springs if spring not in two]
+    made = exchanged(arm, two[0], two[1], "lower" if end == "lower" else "upper")
+    return tuple(sorted((*rest, *made), key=lambda spring: (spring.i, spring.k)))
+
+
+def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object, longest: float | None) -> str:
     asked = [
+        *([f"lengths of at most {longest:g} m"] if longest is not None else []),
         *([f"attachments within {limit:g} m"] if limit is not None else []),
         *([f"{len(fixed)} given values"] if fixed else []),
         *(["stiffnesses from stock"] if stock is not None else []),
@@ -161,18 +223,19 @@ def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> s
     return f"no springs {name(layout)}{given} were found that balance this arm, nor a proof that there are none"
 
 
-def _free(found: Solution, stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
+def _free(found: Solution, springs: Sequence[Installation], stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
     of = found.equations
-    names = labels(of.layout)
+    layout = tuple((one.i, one.k) for one in springs)
+    names = labels(layout)
 
     def along(z: complex) -> float | list[float]:
         return z.real if of.arm.straight else [z.real, z.imag]
 
     return {
-        "layout": [name((pair,)) for pair in of.layout],
-        "stiffness": {label: one.stiffness for label, one in zip(names, found.springs, strict=True)},
-        "a": {label: along(one.a / upward(one.i)) for label, one in zip(names, found.springs, strict=True)},
-        "b": {label: along(one.b) for label, one in zip(names, found.springs, strict=True)},
+        "layout": [name((pair,)) for pair in layout],
+        "stiffness": {label: one.stiffness for label, one in zip(names, springs, strict=True)},
+        "a": {label: along(one.a / upward(one.i)) for label, one in zip(names, springs, strict=True)},
+        "b": {label: along(one.b) for label, one in zip(names, springs, strict=True)},
         "limit": None if isinf(of.limit) else of.limit,
         "stock": None if stock is None else list(stock),
         "seed": seed,
@@ -192,6 +255,8 @@ METHOD = Method(
         "a": Parameter("length", "of a spring, along its lower link from the far joint; the ground's is up", each=True),
         "b": Parameter("length", "of a spring, along its upper link from the near joint", each=True),
         "stock": Parameter("stiffness", "K,K,...: stiffnesses to choose from", many=True),
+        "longest": Parameter("length", "that a spring gets in any pose (default: no limit)"),
+        "exchange": Parameter("text", "14:lower or 14:upper: two springs 14 as 14 and 24, Eq. (28a), or 13, (28b)"),
         "seed": Parameter("whole", "of the random starts (default 0)"),
     },
 )
