@@ -13,7 +13,7 @@ from ..._version import __version__
 from ...balance import Balance
 from ...energy.fourier import EXACT
 from ...io.yaml import to_text
-from ..schematic import symbol
+from ..schematic import symbols
 from ..text import percent, torque
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
@@ -43,17 +43,19 @@ def springs_table(balance: Balance) -> Table:
     head = ("spring", "", "k [N/m]", "free length [mm]", "shortest [mm]", "longest [mm]", "largest force [N]")
     rows = [
         (
-            spring.name, symbol("k", i), Number(spring.stiffness, f"{spring.stiffness:.5g}"), _mm(spring.free_length),
+            spring.name, letter, Number(spring.stiffness, f"{spring.stiffness:.5g}"), _mm(spring.free_length),
             _mm(use.min_length), _mm(use.max_length), Number(use.max_force, f"{use.max_force:.4g}"),
         )
-        for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True))
+        for spring, use, letter in zip(
+            balance.mechanism.springs, balance.use, symbols(balance.mechanism, "k"), strict=True
+        )
     ]  # fmt: skip
     return Table.of("Springs, and how they are used over all poses looked at", head, rows)
 
 
 def _attachments(balance: Balance) -> Table:
     ends = [
-        (symbol(letter, i), spring.name, body, *map(_mm, p))
+        (symbols(balance.mechanism, letter)[i], spring.name, body, *map(_mm, p))
         for i, spring in enumerate(balance.mechanism.springs)
         for letter, body, p in (("a", spring.body_a, spring.p_a), ("b", spring.body_b, spring.p_b))
     ]

@@ -14,7 +14,7 @@ from ...energy.potential import Potential, State
 from ...kinematics import Tree
 from ...mechanism import Mechanism
 from ...synthesis.pseudobase.moments import Lump, Moment, Segment, moments, segments
-from ...synthesis.pseudobase.parallelograms import mobility
+from ...synthesis.pseudobase.parallelograms import mobility, widths
 from ..record import Plot, Reproduction, Row, proved, spread, vector
 from .arm import TIMES, arm, balanced, motion
 from .tables import TABLE_2, TABLE_3, TABLE_4, point
@@ -38,7 +38,7 @@ GOLDEN = {
 
 def reproduction() -> Reproduction:
     """Everything the paper prints."""
-    sections = (_mobility, _bare_moments, _table_2, _table_3, _table_4, _energies, _spring_3)
+    sections = (_mobility, _bare_moments, _table_2, _table_3, _table_4, _energies, _spring_3, _folds)
     return Reproduction.of(PAPER, CITATION, sections, (_figure_9,))
 
 
@@ -205,6 +205,46 @@ _SIGMA_3 = (
     "its spring the energy varies (not over the motion of Eq. (26), which keeps theta_2 + theta_3 constant)"
 )
 _ROUNDED = "what the rounding of the printed ends leaves, b_3 = c_3 among them"
+
+
+def _folds() -> Iterator[Row]:
+    """Where real RSSR modules fold (Sec. 4)."""
+    bare = arm()
+    links = {link.name: link for link in segments(bare)}
+    modules = [(links[f"link {i}"], np.array(point(row.c)) - links[f"link {i}"].origin) for i, row in TABLE_2.items()]
+    width = widths(Tree.of(bare), modules, motion())
+    count = 0
+    for j, i in enumerate(TABLE_2):
+        crossed = np.flatnonzero(np.diff(np.sign(width[:, j])) != 0)
+        if not len(crossed):
+            continue
+        count += 1
+        k = int(crossed[0])
+        share = width[k, j] / (width[k, j] - width[k + 1, j])
+        at = float(TIMES[k] + share * (TIMES[k + 1] - TIMES[k]))
+        item = f"time at which the module of link {i} folds in the paper's own motion, with real joints"
+        yield Row(
+            PAPER,
+            item,
+            None,
+            at,
+            "s",
+            golden=FOLDED.get(i, "never"),
+            note="C, the joint's axis and the vertical are in one plane",
+        )
+    yield Row(PAPER, "modules that fold in the paper's own motion", None, count, golden=float(len(FOLDED)))
+    real = balanced(real=True)
+    yield Row(
+        PAPER,
+        "modules that fold within +-0.3 rad of a pose between",
+        None,
+        len(real.free_parameters["folds"]),
+        golden=0.0,
+    )
+    yield proved(PAPER, "real RSSR joints, on the branch of the assembly pose", real.balance, "0")
+
+
+FOLDED = {2: "3.50", 6: "6.22"}  # [s]
 
 
 def _variation(mechanism: Mechanism) -> float:

@@ -97,7 +97,8 @@ def design(
     sizes = spring_sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},  # (16)
                          {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
                          stiffness, l_CA=l_CA, l_CB=l_CB)  # fmt: skip
-    balanced = Builder(bare, links, height, real).build(modules, whole, sprung, sizes)
+    builder = Builder(bare, links, height, real)
+    balanced = builder.build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
         "stiffness": {name: K for name, (K, _, _) in sizes.items()},
@@ -110,6 +111,8 @@ def design(
         "planar": flat,
         "mobility": {"active": turning, "idle": idle},
     }
+    if real:
+        free["folds"] = builder.folding(modules)
     return Design.of(balanced, "pseudobase", free)
 
 
