@@ -42,12 +42,12 @@ def test_a_rational_relation_is_found_and_a_bent_one_is_not():
 def test_a_parallelogram_stays_one_beyond_where_it_folds():
     tree = Tree.of(parallelogram())
     assert isinstance(tree, Linkage)
-    angles = np.linspace(-3.1, 3.1, 63)
+    angles = np.linspace(-3.1, 3.1, 64)
     full, status = tree.branch.solve(angles[:, None])
     assert (status == Status.CLOSED).all()
     at = [tree.open.coordinates.index(name) for name in ("crank", "coupler", "rocker")]
     np.testing.assert_allclose(full[:, at], np.column_stack([angles, -angles, angles]), atol=1e-12)
-    np.testing.assert_allclose(tree.branch.rates(full, tree.open.poses(full))[:, at, 0], np.tile([1, -1, 1], (63, 1)))
+    np.testing.assert_allclose(tree.branch.rates(full, tree.open.poses(full))[:, at, 0], np.tile([1, -1, 1], (64, 1)))
     assert tree.branch.solve(np.array([[0.0], [np.pi]]))[1].tolist() == [Status.SINGULAR, Status.SINGULAR]
 
 
