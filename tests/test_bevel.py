@@ -24,7 +24,7 @@ import equipoise as eq
 from equipoise.energy.evaluate import Potential
 from equipoise.io import mjcf
 from equipoise.model.errors import EquipoiseWarning, InfeasibleError, InputError, UnsupportedError
-from equipoise.reproduce.cho2012 import shoulder
+from equipoise.reproduce.cho2012 import arm as shoulder
 from equipoise.synthesis import METHODS
 from equipoise.synthesis.arms.shoulder import find
 from equipoise.synthesis.bevel import differential as d

@@ -78,6 +78,66 @@ def test_random_arms(seed):
     assert eq.design(arm, "planar").balance.exact
 
 
+SIX = {  # link lengths, masses and mass centres of arms whose layout the energy-weighted fits alone do not find
+    "12,13,15,16,24,26": (
+        [0.4966, 1.4904, 1.0904, 1.5927, 0.9637],
+        [0.2825, 0.2815, 0.1288, 0.2609, 0.0637],
+        [0.0945, 0.092, 0.0412, 0.1062, 0.0637],
+    ),
+    "12,13,14,16,25,26": (
+        [0.6388, 1.7477, 0.3852, 1.0155, 0.6185],
+        [0.1733, 0.2975, 0.2215, 0.2594, 0.0581],
+        [0.0581, 0.1888, 0.1087, 0.0885, 0.0581],
+    ),
+}
+
+
+@pytest.mark.slow(reason="solves layouts of six links")
+@pytest.mark.parametrize("layout", SIX)
+def test_a_feasible_layout_of_six_links_is_designed(layout):
+    found = eq.design(planar_arm(*SIX[layout]), "planar", layout=layout.split(","))
+    assert found.balance.exact
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("seed", range(4))
+def test_every_feasible_layout_is_designed_for_random_arms(seed):
+    rng = np.random.default_rng(seed)
+    for layout in THEORY_5:
+        n = max(int(pair[1]) for pair in layout.split(","))
+        lengths, shares = rng.uniform(0.1, 0.3, n - 1), rng.uniform(0.2, 0.8, n - 1)
+        mechanism = planar_arm(rng.uniform(0.4, 2, n - 1).tolist(), lengths.tolist(), (shares * lengths).tolist())
+        assert eq.design(mechanism, "planar", layout=layout.split(",")).balance.exact, layout
+
+
+@pytest.mark.slow(reason="searches all starts for a design that there is not")
+@pytest.mark.parametrize("limits", [None, (0.2, 2.0)])
+def test_a_limit_on_elongation(limits):
+    """Over the joints' ranges: a shorter limit is possible where they are short."""
+    bare = lee_chen()
+    longest = 0.5 if limits is None else 0.4
+    m = replace(bare, joints=tuple(replace(joint, range=limits) for joint in bare.joints))
+    free = max(use.path[1] for use in eq.design(m, "planar").balance.use)
+    found = eq.design(m, "planar", longest=longest)
+    assert found.balance.exact
+    assert max(use.path[1] for use in found.balance.use) <= longest < free
+    with pytest.raises(InfeasibleError, match=r"lengths of at most 0.05 m were found"):
+        eq.design(m, "planar", longest=0.05)
+
+
+def test_springs_are_exchanged():
+    """Eq. (28a) makes 14 and 24 of two springs 14; (28b) finds none in a balanced arm, where the links between count
+    nothing in one mix of the two (43)."""
+    found = eq.design(lee_chen(), "planar", layout=["13", "14", "14"], exchange="14:lower")
+    assert found.free_parameters["layout"] == ["13", "14", "24"]
+    assert found.balance.exact
+    with pytest.raises(InfeasibleError, match="no two springs have this effect"):
+        eq.design(lee_chen(), "planar", layout=["13", "14", "14"], exchange="14:upper")
+    for text in ("14:lower", "13:both", "14"):
+        with pytest.raises(InputError, match="exchange: expected two springs of the layout and lower or upper"):
+            eq.design(lee_chen(), "planar", exchange=text)
+
+
 def test_stock_and_given_values():
     stock = [100.0, 150.0, 200.0, 300.0, 500.0]
     found = eq.design(lee_chen(), "planar", layout=["13", "14", "14"], stock=stock)

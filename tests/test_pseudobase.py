@@ -321,3 +321,25 @@ def test_command_line(run, tmp_path):
     code, _, err = run("design", source, "--method", "pseudobase", "--set", "auxiliary=x")
     assert code == 2
     assert "--set.auxiliary: expected a share such as 0.05 or 5%, found 'x'" in err
+
+
+def any_arm(n: int) -> eq.Mechanism:
+    """`n` links of which nothing is special, on unlimited joints."""
+    rng = np.random.default_rng(n)
+    bodies = tuple(eq.Body(f"link {i}", float(rng.uniform(0.5, 4)), tuple(rng.uniform(-0.2, 0.2, 3))) for i in range(n))
+    joints = tuple(
+        eq.Joint(f"joint {i}", "revolute", f"link {i - 1}" if i else "world", f"link {i}",
+                 tuple(rng.uniform(-0.3, 0.3, 3)), tuple(rng.uniform(-1.5, 1.5, 3)), axis=(0, 0, 1))
+        for i in range(n)
+    )  # fmt: skip
+    return eq.Mechanism("any arm", bodies, joints)
+
+
+@pytest.mark.slow(reason="closes the loops of real joints")
+@pytest.mark.parametrize("n", [2, *(pytest.param(n, marks=pytest.mark.deep) for n in range(3, 8))])
+def test_real_joints_are_proved_on_the_branch_of_the_assembly_pose(n):
+    """Its modules fold within the ranges, where another branch begins that does not balance: it is never met."""
+    found = eq.design(any_arm(n), "pseudobase", real=True)
+    assert found.free_parameters["folds"]
+    assert found.balance.exact
+    assert found.balance.relative < 1e-9

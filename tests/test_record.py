@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from equipoise.model.errors import InputError
-from equipoise.reproduce import Map, Plot, Row, reproduce
+from equipoise.model.errors import InfeasibleError, InputError
+from equipoise.reproduce import Map, Plot, Reproduction, Row, reproduce
 from equipoise.reproduce.record import half_unit, spread, vector
 
 
@@ -18,14 +18,33 @@ def test_spread_of_a_product_is_first_order():
     assert spread(lambda x, y: x * y, ["2.0", "3.00"]) == pytest.approx(0.16)
 
 
+WRONG = {"golden": "0.20", "why": "a digit is missing"}
+
+
 @pytest.mark.parametrize(
     ("published", "computed", "more", "verdict"),
     [
         ("0.13", 0.1349, {}, "agrees"),
-        ("0.13", 0.1351, {}, "differs"),
+        ("0.13", 0.1351, {}, "FAILS"),
         ("0.13", 0.1351, {"spread": 0.001}, "agrees"),
-        ("0.13", 0.2, {"erratum": "a digit is missing"}, "erratum"),
-        (None, 0.2, {}, "computed"),
+        ("0.13", 0.1301, {"exact": True}, "FAILS"),
+        ("1", 1.4, {"exact": True}, "FAILS"),
+        ("<= 2", 1.9, {}, "agrees"),
+        ("<= 2", 2.1, {}, "FAILS"),
+        (">= 20", 4.8, {}, "FAILS"),
+        (None, 0.2, {"golden": "0.20"}, "golden"),
+        (None, 0.21, {"golden": "0.20"}, "FAILS"),
+        (None, 1 / 3, {"golden": 1 / 3}, "golden"),
+        (None, 0.3333, {"golden": 1 / 3}, "FAILS"),
+        (None, float("nan"), {"golden": "<= 1e-12"}, "FAILS"),
+        ("0.13", 0.1349, {"golden": "0.1349"}, "agrees"),
+        ("0.13", 0.1349, {"golden": "0.1340"}, "FAILS"),
+        ("0.13", 0.2, {"against": "erratum", **WRONG}, "erratum"),
+        ("0.13", 0.2, {"against": "unprinted", **WRONG}, "unprinted"),
+        (">= 20", 0.2, {"against": "refuted", **WRONG}, "refuted"),
+        ("0.13", 0.2, {"against": "erratum", "proof": False, **WRONG}, "FAILS"),  # nothing proves the print wrong
+        ("0.20", 0.2, {"against": "erratum", **WRONG}, "FAILS"),  # the print is right
+        ("0.13", 0.3, {"against": "erratum", **WRONG}, "FAILS"),  # neither is right
     ],
 )
 def test_verdict(published, computed, more, verdict):
@@ -35,10 +54,61 @@ def test_verdict(published, computed, more, verdict):
     assert set(row.to_dict()) >= keys
 
 
+def test_a_golden_value_is_never_shown_as_published():
+    found = Row("paper", "item", None, 0.2, golden="0.20").to_dict()
+    assert (found["published"], found["golden"], found["tolerance"]) == (None, 0.2, pytest.approx(0.005))
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"published": "1", "against": "erratum", "why": "so"},
+        {"published": "1", "against": "refuted", "golden": 2.0},
+    ],
+)
+def test_a_row_that_is_held_to_nothing_cannot_be_made(more):
+    with pytest.raises(ValueError, match="item"):
+        Row("paper", "item", more.pop("published", None), 1.0, **more)
+
+
+def test_a_section_that_cannot_be_computed_fails_by_its_name():
+    def springs():
+        """The springs of Table 1."""
+        raise InfeasibleError("none were found")
+        yield
+
+    (row,) = Reproduction.of("paper", "citation", [springs], []).rows
+    assert row.verdict == "FAILS"
+    assert "The springs of Table 1." in row.failure
+    assert "none were found" in row.failure
+    assert row.to_dict()["computed"] is None  # JSON has no NaN
+
+
+def test_a_row_that_fails_makes_the_command_fail_and_is_named_last(run, monkeypatch):
+    from equipoise.synthesis.bevel import method
+
+    make = method._disk_spring
+    monkeypatch.setattr(method, "_disk_spring", lambda s, disk, side, phase, width, size: make(
+        s, disk, side, phase, width, (1.3 * size[0], *size[1:])
+    ))  # fmt: skip
+    from equipoise.reproduce.cho2012 import balanced
+
+    balanced.cache_clear()
+    code, out, _ = run("reproduce", "cho2012")
+    balanced.cache_clear()
+    assert code == 1
+    assert (
+        "FAILS: cho2012, k of the left spring, fixed gear near (23): computed 2.08744 kN/m, golden 1.60572"
+        in " ".join(out.split())
+    )
+    assert "gear ratio 0.5: computed 0.858915, golden 0.84368" in " ".join(out.rsplit("FAILS:", 1)[1].split())
+
+
 def test_vectors_give_a_row_for_each_component():
     rows = vector("paper", "sigma", ["0.1", "0.2", "0.30"], np.array([0.1, 0.2, 0.3]), unit="m")
     assert [row.item for row in rows] == ["sigma.x", "sigma.y", "sigma.z"]
-    assert rows[2].rounding == pytest.approx(0.005)
+    assert rows[2].printed.tolerance == pytest.approx(0.005)
     assert rows[1].relative_difference == pytest.approx(0)
 
 

@@ -16,7 +16,7 @@ from zoo import pendulum
 import equipoise as eq
 from equipoise.kinematics import Tree
 from equipoise.report.poses import choose
-from equipoise.report.schematic import HEIGHT, WIDTH, schematic, symbol, to_text
+from equipoise.report.schematic import HEIGHT, WIDTH, schematic, symbols, to_text
 from equipoise.report.skeleton import Skeleton
 from equipoise.report.style import spring_colour
 
@@ -45,7 +45,7 @@ def test_every_example_is_drawn_inside_its_sheet_with_a_letter_for_each_end(path
         x, y = np.array(line.points).T
         assert 0 <= x.min() <= x.max() <= WIDTH
         assert 0 <= y.min() <= y.max() <= HEIGHT
-    letters = [symbol(letter, i) for i in range(len(mechanism.springs)) for letter in "abk"]
+    letters = [text for letter in "abk" for text in symbols(mechanism, letter)]
     assert sorted(label.text for label in drawing.labels) == sorted(letters)
     for label in drawing.labels:
         assert 0 < label.at[0] < WIDTH
@@ -89,7 +89,7 @@ def test_the_legend_gives_stiffness_bodies_and_places():
     said = " | ".join(label.text for label in drawing.labels)
     for i, spring in enumerate(lee_chen_springs().springs):
         assert f"{spring.stiffness:.5g} N/m" in said
-        assert symbol("k", i) in said
+        assert symbols(lee_chen_springs(), "k")[i] in said
         assert f"{spring.body_b} (" in said
     assert all(0 < label.at[1] < drawing.height for label in drawing.labels)
 
@@ -119,7 +119,21 @@ def test_svg_is_well_formed_and_the_same_each_time():
 def test_names_are_escaped_and_symbols_are_numbered():
     spring = eq.Spring("<a&b>", "world", (0, 0, 0.2), "arm", (0.15, 0, 0), 196.2)
     assert "<a&b>" in "".join(ElementTree.fromstring(to_text(pendulum().with_springs([spring]))).itertext())
-    assert symbol("k", 11) == "k₁₂"
+
+
+@pytest.mark.parametrize(
+    ("names", "letters"),
+    [
+        (["k2", "k12"], ["k₂", "k₁₂"]),
+        (["link 2 spring", "link 3 spring"], ["k₂", "k₃"]),
+        (["spring 1 (1-3)", "spring 2 (1-4)", "spring 3 (1-4)"], ["k₁₃", "k₁₄,₁", "k₁₄,₂"]),
+        (["left spring", "right spring"], ["k₁", "k₂"]),
+        (["spring 7 1", "spring 7 2"], ["k₁", "k₂"]),
+    ],
+)
+def test_springs_have_the_letters_of_their_names(names, letters):
+    springs = [eq.Spring(name, "world", (0, 0, 0.2), "arm", (0.15, 0, 0), 196.2) for name in names]
+    assert symbols(pendulum().with_springs(springs), "k") == letters
 
 
 @pytest.mark.parametrize("mechanism", [eq.Mechanism("empty"), lee_chen()], ids=["empty", "without springs"])

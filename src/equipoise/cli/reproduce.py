@@ -20,12 +20,12 @@ def reproduce(
     output: Annotated[Path | None, typer.Option("-o", "--output", help="folder for tables and figures")] = None,
     json: Json = False,
 ) -> None:
-    """The papers' tables and figures, published beside computed. Exit code 1 when a number differs unexplained.
+    """The papers' tables and figures, published beside computed. Exit code 1 when a row fails; it is named last.
 
     Example: [bold]equipoise reproduce lin2010 -o lin2010[/bold]
     """
     from .. import reproduce as papers
-    from ..report.published import reproduction_lines
+    from ..report.published import failure_lines, reproduction_lines
 
     found = []
     with terminal.progress_bar("reproducing") as report:
@@ -41,14 +41,16 @@ def reproduce(
             terminal.show(reproduction_lines(one))
     for path in written:
         terminal.say(f"wrote {path}")
-    raise typer.Exit(1 if any(row.verdict == "differs" for row in rows) else 0)
+    failed = list(failure_lines(found))
+    for line in failed:
+        terminal.say(str(line)) if json else terminal.show(iter([line]))
+    raise typer.Exit(1 if failed else 0)
 
 
 def _write(found: list[Reproduction], folder: Path) -> list[Path]:
     """For each paper its table as Markdown, and its figures."""
     from ..io.files import make_folder, write_text
-    from ..report.plots import save_plot
-    from ..report.published import reproduction_markdown
+    from ..report.published import file_name, reproduction_markdown, save_figure
 
     make_folder(folder)
     written = []
@@ -56,6 +58,6 @@ def _write(found: list[Reproduction], folder: Path) -> list[Path]:
         written.append(folder / f"{one.paper}.md")
         write_text(written[-1], reproduction_markdown(one))
         for figure in one.figures:
-            written.append(folder / f"{one.paper}-{figure.name}.png")
-            save_plot(figure, written[-1])
+            written.append(folder / file_name(one, figure))
+            save_figure(figure, written[-1])
     return written

@@ -41,8 +41,8 @@ def simulate(
         str | None,
         typer.Option(
             metavar="PAPER|FILE.csv",
-            help="drive it through lin2010's, lee2014's or lenzo2017's motion, or a table with the column 'time' and "
-            "one for each coordinate that moves, such as 'elbow [deg]'",
+            help="drive it through lin2010's, lee2014's, lenzo2017's or cho2012's motion, or a table with the column "
+            "'time' and one for each coordinate that moves, such as 'elbow [deg]'",
         ),
     ] = None,
     plot: Annotated[Path | None, typer.Option(help="of the energies of a motion: .svg, .png or .pdf")] = None,

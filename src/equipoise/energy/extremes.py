@@ -11,12 +11,90 @@ import numpy as np
 
 from ..kinematics.sampling import bounds, inside, slowest
 from ..kinematics.tree import Tree
-from ..model.arrays import Array
+from ..model.arrays import Array, Integers
 
 CLIMB_ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step
 BUDGET = 48_000  # poses the climb may evaluate in all
 LOOPED = 12_000  # the same where every pose has loops to close
+DIFFERENCE = 1e-6  # of the box's width, for slopes
+STEPS = 0.3 ** np.arange(6)  # of a quasi-Newton step, tried all at once
+LONGEST = 0.25  # of the box's width, a step at most
+
+
+def ascend(
+    values: Callable[[Array], Array], x: Array, which: Integers, lower: Array, upper: Array, rounds: int
+) -> tuple[Array, Array]:
+    """Local maxima in a box by quasi-Newton steps, faces, edges and corners included, from many starts at once.
+
+    Args:
+        values: (N, n) points -> (N, m) quantities; what is not finite is never taken.
+        x: (S, n) starts. which: (S,) the quantity that each is to raise.
+        lower, upper: (n,) the box.
+
+    Returns:
+        (S,) what they reach, and (S, n) where.
+    """
+    width = np.where(upper > lower, upper - lower, 1.0)
+    starts, n = x.shape
+    each = np.arange(starts)
+
+    def height(u: Array) -> Array:
+        """(S, k) of (S, k, n) points in units of the box."""
+        found = values((lower + u * width).reshape(-1, n)).reshape(starts, u.shape[1], -1)[each, :, which]
+        return np.where(np.isfinite(found), found, -np.inf)
+
+    u = (x - lower) / width
+    best, H = height(u[:, None])[:, 0], np.broadcast_to(np.eye(n), (starts, n, n)).copy()
+    last: tuple[Array, Array] | None = None
+    for _ in range(rounds):
+        side = np.where(u + DIFFERENCE > 1, -1.0, 1.0)
+        beside = height(u[:, None] + DIFFERENCE * side[:, None] * np.eye(n))
+        with np.errstate(invalid="ignore"):
+            slope = (beside - best[:, None]) / (DIFFERENCE * side)
+        slope = np.where(np.isfinite(slope), slope, 0.0)
+        if last is not None:
+            H = _curved(H, u - last[0], last[1] - slope)
+        last = u, slope
+        pushed = slope * ~(((u <= 0) & (slope < 0)) | ((u >= 1) & (slope > 0)))
+        step = np.einsum("sij,sj->si", H, pushed) * (pushed != 0)
+        wrong = (step * pushed).sum(axis=1) <= 0
+        step[wrong] = pushed[wrong]
+        longest = np.abs(step).max(axis=1, keepdims=True)
+        step *= LONGEST / np.maximum(longest, LONGEST)
+        trial = np.clip(u[:, None] + STEPS[:, None] * step[:, None], 0.0, 1.0)
+        found = height(trial)
+        winner = found.argmax(axis=1)
+        better = found[each, winner] > best
+        u = np.where(better[:, None], trial[each, winner], u)
+        best = np.where(better, found[each, winner], best)
+        H[~better] = np.eye(n)  # next along the slope
+    return best, lower + u * width
+
+
+def _curved(H: Array, s: Array, y: Array) -> Array:
+    """The BFGS update (S, n, n) of inverse curvatures for steps `s` and changes of slope `y`, where positive."""
+    sy = (s * y).sum(axis=1)
+    good = sy > 1e-12 * np.sqrt((s**2).sum(axis=1) * (y**2).sum(axis=1))
+    rho = np.where(good, 1 / np.where(good, sy, 1.0), 0.0)[:, None, None]
+    V = np.eye(s.shape[1]) - rho * s[:, :, None] * y[:, None]
+    return np.where(good[:, None, None], V @ H @ np.swapaxes(V, 1, 2) + rho * s[:, :, None] * s[:, None], H)
+
+
+def apart(values: Array, u: Array, count: int) -> Integers:
+    """(count,) numbers of the best of (N,) values whose points `u` (N, n), in units of the box, are well apart.
+
+    A start that only repeats its neighbour finds nothing new.
+    """
+    order = np.argsort(-values)[: 50 * count]
+    chosen: list[int] = []
+    for radius in (0.2, 0.1, 0.0):
+        for i in order:
+            if len(chosen) == count:
+                break
+            if i not in chosen and all(np.abs(u[i] - u[j]).max() >= radius for j in chosen):
+                chosen.append(int(i))
+    return np.array(chosen)
 
 
 def climb(tree: Tree, values: Callable[[Array], Array], q: Array, seed: int = 0) -> tuple[Array, Array]:

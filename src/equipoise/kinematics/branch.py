@@ -1,24 +1,29 @@
 """One way of assembling a mechanism's loops: all the closed poses that paths from its assembly pose lead to.
 
 Waypoints are closed poses all over the ranges, found from each other; every other pose is reached from the nearest.
+Where joint angles are related, as in a parallelogram, the relations take the place of coordinates: so the branch goes
+on through the poses where it folds, and no path strays into the other branch that it meets there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from enum import IntEnum
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ..model.arrays import Array, Booleans, Integers, frozen
-from ..model.mechanism import Body, Mechanism
+from ..model.mechanism import SINGLE, Body, Coupling, Mechanism
 from . import assembly
 from .closure import Closure
 from .continuation import SHORTEST, follow, tangent
+from .relations import relations
 from .sampling import bounds, inside
-from .tree import Tree
+from .tree import Poses, Tree
 
+NEARBY = 0.05  # [rad, or share of the size] from the assembly pose, where relations are looked for
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
 WAYPOINTS = 512  # goals of a round
 FLOODS = 4  # each in the box of what the last has reached
@@ -57,6 +62,7 @@ class Branch:
         open: the spanning tree, loops ignored.
         assembled: (open.n,) the closed pose that all others are reached from.
         mobility: how many ways the mechanism can move.
+        within: the branch of the mechanism with the relations as couplings; None where there are none.
         split: which coordinates of the spanning tree are independent.
 
     Raises:
@@ -70,6 +76,43 @@ class Branch:
         self.mobility = assembly.mobility(self.closure, self.assembled)
         self.split = assembly.choose(self.closure, self.assembled, self.mobility.numerical)
         self._remembered: dict[bytes, tuple[Array, Status]] = {}
+        self.within: Branch | None = None
+        found = tuple(self._relations())
+        if found:
+            names = self.open.coordinates
+            start = dict(zip(names, self.assembled.tolist(), strict=True))
+            kept = [name for name in names if name not in {one.joint for one in found}]
+            self.within = Branch(replace(
+                mechanism,
+                couplings=(*mechanism.couplings, *found),
+                independent=tuple(names[j] for j in self.split.independent),
+                assembly=tuple((name, start[name]) for name in kept),
+            ))  # fmt: skip
+            self._kept = [names.index(name) for name in kept]
+            self._spread, self._offset = np.zeros((len(names), len(kept))), np.zeros(len(names))
+            self._spread[self._kept, range(len(kept))] = 1.0
+            for one in found:
+                j = names.index(one.joint)
+                self._offset[j] = one.offset
+                for name, ratio in one.terms:
+                    self._spread[j, kept.index(name)] = ratio
+
+    def _relations(self) -> Iterator[Coupling]:
+        """Between the joints, at poses near the assembly pose."""
+        single = {joint.name for joint in self.open.mechanism.joints if joint.type in SINGLE}
+        names, first = self.open.coordinates, self.split.independent.tolist()
+        if not single & {names[j] for j in self.split.dependent}:
+            return
+        count = 4 * self.open.n
+        start = self.assembled[None].repeat(count, axis=0)
+        T, condition = tangent(self.closure.at(start)[1], self.split)
+        if condition.max(initial=0) > SINGULAR:
+            return
+        aside = np.random.default_rng(0).uniform(-NEARBY, NEARBY, (count, len(first)))
+        goal = start[:, first] + aside * self.closure.scale[first]
+        q, reached = follow(self.closure, self.split, start, T, self.closure.at(start)[1], goal)
+        if reached.sum() > 2 * self.open.n:
+            yield from relations(q[reached], [name in single for name in names], names, first)
 
     @staticmethod
     def of(mechanism: Mechanism) -> Branch:
@@ -105,6 +148,10 @@ class Branch:
 
     def _close(self, u: Array) -> tuple[Array, Integers]:
         """`solve` for new poses: from the nearest waypoint, then from the next ones."""
+        if self.within is not None:
+            q, status = self.within.solve(u)
+            full = q @ self._spread.T + self._offset
+            return self._without_singular(full, status)
         way = self._waypoints
         full, status = np.full((len(u), self.open.n), np.nan), np.full(len(u), int(Status.UNREACHABLE))
         near = self._nearest(u, way.q)
@@ -114,10 +161,28 @@ class Branch:
             full[todo[reached]] = q[reached]
             status[todo[reached]] = Status.CLOSED
             todo = todo[~reached]
+        return self._without_singular(full, status)
+
+    def _without_singular(self, full: Array, status: Integers) -> tuple[Array, Integers]:
+        """Poses and their status where singular ones are none."""
         closed = np.flatnonzero(status == Status.CLOSED)
         bad = closed[~self._regular(full[closed])]
         full[bad], status[bad] = np.nan, Status.SINGULAR
         return full, status
+
+    def rates(self, full: Array, poses: Poses) -> Array:
+        """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n) with their poses; NaN where not closed."""
+        if self.within is not None:
+            inner = full[:, self._kept]
+            return self._spread @ self.within.rates(inner, self.within.open.poses(inner))
+        split, scale = self.split, self.closure.scale
+        rates = np.full((len(full), self.open.n, len(split.independent)), np.nan)
+        good = np.flatnonzero(~np.isnan(full).any(axis=1))
+        T, _ = tangent(self.closure.jacobian(full, poses)[good], split)
+        rates[good] = 0.0
+        rates[np.ix_(good, split.independent)] = np.eye(len(split.independent))
+        rates[np.ix_(good, split.dependent)] = T * scale[split.dependent, None] / scale[split.independent]
+        return rates
 
     def _follow(self, way: Waypoints, start: Integers, goal: Array, shortest: float) -> tuple[Array, Booleans]:
         def part(i: slice) -> tuple[Array, Booleans]:
@@ -169,6 +234,8 @@ class Branch:
     @cached_property
     def box(self) -> tuple[Array, Array]:
         """Lower and upper ends (m,) of a box round the poses that are reached inside the ranges, with a margin."""
+        if self.within is not None:
+            return self.within.box
         return self._around(self._waypoints.q)
 
     def _around(self, q: Array) -> tuple[Array, Array]:

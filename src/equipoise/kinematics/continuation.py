@@ -41,7 +41,8 @@ def least_squares(J: Array, rhs: Array) -> tuple[Array, Array]:
     diagonal[np.abs(diagonal) < 1e-200] = 1e-200  # exactly singular: a condition number, not a fault
     inverse = np.linalg.inv(R)
     x = inverse @ (np.swapaxes(Q, 1, 2) @ rhs)
-    return x, np.linalg.norm(R, axis=(1, 2)) * np.linalg.norm(inverse, axis=(1, 2))
+    with np.errstate(over="ignore"):  # infinite where it is exactly singular
+        return x, np.linalg.norm(R, axis=(1, 2)) * np.linalg.norm(inverse, axis=(1, 2))
 
 
 def tangent(J: Array, split: Split) -> tuple[Array, Array]:

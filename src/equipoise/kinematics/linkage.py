@@ -11,7 +11,6 @@ import numpy as np
 from ..model.arrays import Array, Integers, frozen
 from ..model.mechanism import Mechanism
 from .branch import Branch
-from .continuation import tangent
 from .tree import Poses, Tree, Velocities
 
 
@@ -75,17 +74,5 @@ class Linkage(Tree):
         """Analytic body velocities per unit rate of each independent coordinate, at `q` (N, n) with its `poses`."""
         full = poses.q if isinstance(poses, ClosedPoses) else self.branch.solve(q)[0]
         velocities = self.open.velocities(full, poses)
-        rates = self._rates(full, poses)[:, None]
+        rates = self.branch.rates(full, poses)[:, None]
         return Velocities(velocities.w @ rates, velocities.v @ rates, velocities.s @ rates[:, 0])
-
-    def _rates(self, full: Array, poses: Poses) -> Array:
-        """dq/du (N, open.n, n)."""
-        closure, split = self.branch.closure, self.branch.split
-        rates = np.full((len(full), self.open.n, self.n), np.nan)
-        good = np.flatnonzero(~np.isnan(full).any(axis=1))
-        T, _ = tangent(closure.jacobian(full, poses)[good], split)
-        rates[good] = 0.0
-        rates[np.ix_(good, split.independent)] = np.eye(self.n)
-        scale = closure.scale
-        rates[np.ix_(good, split.dependent)] = T * scale[split.dependent, None] / scale[split.independent]
-        return rates

@@ -8,7 +8,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..synthesis.planar.installing import upward
+from ..synthesis.planar.arm import upward
 from ..synthesis.planar.layouts import Feasible, LayoutSearch, labels, name, span
 
 COSTS = {"springs": "springs", "span": "joints that springs span", "weighted": "weighted cost"}

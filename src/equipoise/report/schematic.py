@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -26,9 +27,24 @@ PAPER = "white"
 SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
-def symbol(letter: str, i: int) -> str:
-    """Of spring number `i` from 0: k₁ its stiffness, a₁ and b₁ its ends."""
-    return f"{letter}{str(i + 1).translate(SUBSCRIPT)}"
+def symbols(mechanism: Mechanism, letter: str) -> list[str]:
+    """Of each spring: k its stiffness, a and b its ends, with the number in its name, as a paper has it.
+
+    "k12" gives k₁₂, "link 2 spring" k₂, and "spring 2 (1-4)", between links 1 and 4, k₁₄; where two have the same
+    number they are told apart, k₁₄,₁ and k₁₄,₂. Springs whose names have no number each are numbered in their order.
+    """
+    marks = [_number(spring.name) for spring in mechanism.springs]
+    if not all(marks):
+        marks = [str(i + 1) for i in range(len(marks))]
+    told = [mark if marks.count(mark) == 1 else f"{mark},{marks[: i + 1].count(mark)}" for i, mark in enumerate(marks)]
+    return [f"{letter}{mark.translate(SUBSCRIPT)}" for mark in told]
+
+
+def _number(name: str) -> str:
+    """The one number in a name, or the two links in brackets; empty where there is none, or more."""
+    links = re.search(r"\((\d+)-(\d+)\)", name)
+    numbers = re.findall(r"\d+", name)
+    return f"{links[1]}{links[2]}" if links else numbers[0] if len(numbers) == 1 else ""
 
 
 def schematic(mechanism: Mechanism, *, legend: bool = True) -> Drawing:
@@ -46,7 +62,7 @@ def schematic(mechanism: Mechanism, *, legend: bool = True) -> Drawing:
     rows = len(mechanism.springs) if legend else 0
     foot = ROW * (rows + 1) if rows else 0.0  # the heads stand on the picture's lower edge
     drawing = Drawing(WIDTH, HEIGHT + foot)
-    _Pen(drawing, skeleton, poses, view, foot).draw()
+    _Pen(mechanism, drawing, skeleton, poses, view, foot).draw()
     if rows:
         _legend(drawing, mechanism, foot)
     return drawing
@@ -58,7 +74,10 @@ def to_text(mechanism: Mechanism) -> str:
 
 
 class _Pen:
-    def __init__(self, drawing: Drawing, skeleton: Skeleton, poses: Poses, view: View, foot: float) -> None:
+    def __init__(
+        self, mechanism: Mechanism, drawing: Drawing, skeleton: Skeleton, poses: Poses, view: View, foot: float
+    ) -> None:
+        self.mechanism = mechanism
         self.drawing, self.skeleton, self.poses, self.view = drawing, skeleton, poses, view
         (self.left, right), (self.bottom, _) = window(skeleton, poses, view, WIDTH / HEIGHT)
         self.scale, self.foot = WIDTH / (right - self.left), foot  # sheet mm per metre
@@ -90,7 +109,7 @@ class _Pen:
         for i, line in enumerate(lines):
             marks = (("a", line[0]), ("b", line[-1])) if len(line) == 2 else ()
             for letter, p in (*marks, ("k", line.mean(axis=0))):
-                self.label(symbol(letter, i), p, placed)
+                self.label(symbols(self.mechanism, letter)[i], p, placed)
 
     def at(self, point: Point) -> Array:
         """(2,) [mm] on the sheet."""
@@ -157,7 +176,7 @@ def _legend(drawing: Drawing, mechanism: Mechanism, foot: float) -> None:
         drawing.label((x, foot), f"{letter} [mm, its body's frame]", SMALL, bold=True)
     for i, spring in enumerate(mechanism.springs):
         y = foot - ROW * (i + 1)
-        drawing.label((3.0, y), symbol("k", i), SMALL, bold=True)
+        drawing.label((3.0, y), symbols(mechanism, "k")[i], SMALL, bold=True)
         drawing.label((name, y), style.clean(spring.name, 16), SMALL)
         value, unit = spring.strength
         drawing.label((stiffness, y), f"{value:.5g} {unit}", SMALL, "end")

@@ -1,4 +1,4 @@
-"""The source papers, reproduced: one file for each, its tables and figures, published beside computed."""
+"""The source papers, reproduced: one module for each, its tables and figures, published beside computed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PAPERS: tuple[str, ...] = (
 )
 """Keys of the papers; each names its file."""
 
-MOTIONS: tuple[str, ...] = ("lin2010", "lenzo2017", "lee2014")
+MOTIONS: tuple[str, ...] = ("lin2010", "lenzo2017", "lee2014", "cho2012")
 """Those that drive their arm through a motion; their files have `TIMES`, `motion` and `arm`."""
 
 __all__ = ["MOTIONS", "PAPERS", "Map", "Plot", "Reproduction", "Row", "motion", "reproduce"]

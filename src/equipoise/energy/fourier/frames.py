@@ -23,6 +23,7 @@ from .series import Series
 MAX_TERMS = 200_000
 MAX_KEYS = 16_000_000  # frequencies and degrees of all terms: 64 MB
 MAX_FREQUENCY = 2**31 - 1  # a sum of frequencies has to fit the keys of a `Series`
+ALIKE = 1e-12  # how near orientations are that count as one
 MAX_DENOMINATOR = 1000  # a coupling ratio is taken as a fraction of at most this denominator
 
 
@@ -41,6 +42,7 @@ class Frames:
         self.denominators = np.array([_denominator(column) for column in tree.C[tree.rotates].T], int)
         self._chains: dict[tuple[int, int], Series] = {}
         self._paths: dict[int, list[int]] = {}
+        self._like = self._orientations()
 
     def stretch(self, body_a: int, body_b: int) -> dict[int, Series]:
         """Z of THEORY section 1 as ``{X: V_X}``, V_X 3 x 7: the stretch is ``sum_X R_WX V_X z``, z = [p_a; 1; p_b]."""
@@ -49,7 +51,7 @@ class Frames:
         unit = np.eye(7)[None, 3]
         parts: dict[int, list[Series]] = {}
         for sign, body, point in ((-1, body_a, to_a), (1, body_b, to_b)):
-            parts.setdefault(body, []).append(self.constant(sign * point))
+            parts.setdefault(self._like[body], []).append(self.constant(sign * point))
             for X, step in self._origin(body):
                 parts.setdefault(X, []).append((step @ self.constant(unit)).scaled(sign))
         return _nonzero(parts)
@@ -58,15 +60,15 @@ class Frames:
         """``sum m p`` of the masses (body, m [kg], p [m]) as ``{X: v_X}`` with ``sum_X R_WX v_X``, v 3 x 1 [kg m]."""
         parts: dict[int, list[Series]] = {}
         for body, mass, p in masses:
-            parts.setdefault(body, []).append(self.constant(mass * p[:, None]))
+            parts.setdefault(self._like[body], []).append(self.constant(mass * p[:, None]))
             for X, step in self._origin(body):
                 parts.setdefault(X, []).append(step.scaled(mass))
         return _nonzero(parts)
 
-    def linear(self, row: Array, V: dict[int, Series]) -> Series:
-        """``row . sum_X R_WX V_X`` with a world vector `row` (3,); coefficients (T, 1, m)."""
+    def linear(self, row: Array, V: dict[int, Series], body: int = 0) -> Series:
+        """``row . sum_X R_BX V_X`` with `row` (3,) in the frame of a body, or the world; coefficients (T, 1, m)."""
         left = self.constant(np.asarray(row)[None])
-        return self._sum([left @ self.relative(0, X) @ v for X, v in V.items()], V)
+        return self._sum([left @ self.relative(body, X) @ v for X, v in V.items()], V)
 
     def quadratic(self, V: dict[int, Series]) -> Series:
         """``|sum_X R_WX V_X|^2``: coefficients (T, m, m), symmetric."""
@@ -113,7 +115,7 @@ class Frames:
             step = self.constant(link.p0[:, None])
             if link.slide:
                 step = Series.sum([step, self._slide(link)])
-            yield link.parent, step
+            yield self._like[link.parent], step
             body = link.parent
 
     def _slide(self, link: Link) -> Series:
@@ -150,6 +152,7 @@ class Frames:
 
     def relative(self, X: int, Y: int) -> Series:
         """R_XY."""
+        X, Y = self._like[X], self._like[Y]
         above_x, above_y = self._bases(X), self._bases(Y)
         top = next(body for body in above_x if body in above_y)
         left, right = self._chain(top, X), self._chain(top, Y)
@@ -159,6 +162,35 @@ class Frames:
         product = (left.T @ right).collected() if len(left) > 1 else left.T @ right
         self._guard(len(product))
         return product
+
+    def _orientations(self) -> list[int]:
+        """For each body the first that always has its orientation, as an auxiliary link has its link's.
+
+        An orientation is that at zero, turned about its joints' axes at zero, one after the other.
+        """
+        tree, count, first = self.tree, len(self.tree.names), [0]
+        like, home, turns = list(range(count)), [np.eye(3)] * count, [np.zeros((0, 4 + tree.n))] * count
+        for link in tree.links:
+            body = link.body
+            home[body] = home[link.base] @ link.R0
+            own = [
+                [*(home[body] @ motion.axis), *tree.C[motion.row], tree.s0[motion.row]]
+                for motion in link.motions
+                if motion.rotates
+            ]
+            turns[body] = np.vstack([turns[link.base], np.reshape(own, (-1, 4 + tree.n))])
+            for other in first:
+                if len(turns[other]) != len(turns[body]):
+                    continue
+                if (
+                    max(np.abs(home[other] - home[body]).max(), np.abs(turns[other] - turns[body]).max(initial=0))
+                    < ALIKE
+                ):
+                    like[body] = other
+                    break
+            else:
+                first.append(body)
+        return like
 
     def _bases(self, body: int) -> list[int]:
         """The body and those that its orientation hangs on, down to the world."""

@@ -14,7 +14,7 @@ from ...energy.fourier.energy import EXACT
 from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses
-from ..schematic import symbol
+from ..schematic import symbols
 from ..text import percent, torque
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
@@ -51,12 +51,13 @@ def springs_tables(balance: Balance) -> list[Table]:
 
 def _springs_table(balance: Balance, unit: str) -> Table | None:
     show, rows = _mm if unit == "m" else _degrees, []
+    letters = symbols(balance.mechanism, "k")
     for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True)):
         if spring.path_unit == unit:
             strength, most = spring.strength[0], max(map(abs, use.force))
             rows.append(
                 (
-                    spring.name, symbol("k", i), Number(strength, f"{strength:.5g}"),
+                    spring.name, letters[i], Number(strength, f"{strength:.5g}"),
                     *map(show, (spring.free, *use.path)), Number(most, f"{most:.4g}"),
                 )
             )  # fmt: skip
@@ -66,7 +67,7 @@ def _springs_table(balance: Balance, unit: str) -> Table | None:
 
 def _attachments(balance: Balance) -> list[Table]:
     ends = [
-        (symbol(letter, i), spring.name, body, *map(_mm, p))
+        (symbols(balance.mechanism, letter)[i], spring.name, body, *map(_mm, p))
         for i, spring in enumerate(balance.mechanism.springs)
         for letter, (body, p) in zip("ab", spring.ends, strict=False)
     ]

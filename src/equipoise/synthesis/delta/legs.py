@@ -44,8 +44,10 @@ class DeltaLeg:
             along y, in the leg's frame [m].
         elbow: +-1, on which side of the line from A to D the point B is; 1 is outwards.
         moment_2: (3,) mass moment of link 2 itself about A, in its frame [kg m].
+        moment_3: (3,) that of link 3 itself about B, across B, in its frame: of a bar that it carries, for one.
         moment_4: (3,) that of all that turns about C, link 5 and a third of the platform included, in rod 4's frame.
         load: mass that hangs on B [kg], a third of the platform included.
+        misprint: (m4 - m5) CD, see `rocker.Guide.stiffness_11` [kg m].
     """
 
     joints: tuple[str, str]
@@ -63,8 +65,10 @@ class DeltaLeg:
     foot: Array
     elbow: float
     moment_2: Array
+    moment_3: Array
     moment_4: Array
     load: float
+    misprint: float
 
     def actuator(self, P: Array) -> Array:
         """(N,) value of the joint at A with the platform's origin at `P` (N, 3) in the world; NaN out of reach."""
@@ -204,7 +208,6 @@ class _Reader:
         self._want(max(abs(c[2]) for c in C) / size, wrong)
 
         share, R_4 = self.mass[platform] / 3, R[four.body]
-        self._on_axis(three, R_W3, f"link 3 '{self.tree.names[three.body]}' is not on the axis of '{three.joint.name}'")
         self._on_axis(five, R_W3, f"link 5 '{self.tree.names[five.body]}' is not in line with its joints")
         rods = self.moment[four.body] + R_4.T @ R[other.body] @ self.moment[other.body]
         moment = rods + (self.mass[five.body] + share) * (R_4.T @ rod)
@@ -217,6 +220,7 @@ class _Reader:
         R_2 = R_2 @ about(Y, angle)
         B = R[two.body].T @ (p[three.body] - p[two.body])
         b = R_2.T @ B
+        own = _across(self.moment[three.body], R[three.body].T @ y)
         tilt = float(np.arctan2(z @ x, z @ up))
         middle = p[five.body] + (p[other.body] - p[four.body]) / 2
         centre = y @ (p[four.body] + p[other.body] - 2 * p[two.body]) / 2
@@ -235,13 +239,15 @@ class _Reader:
             lower=size,
             foot=R_WL.T @ (point - middle) + centre * np.array(Y),
             elbow=float(np.sign(np.cross(p[three.body] - p[two.body], middle - p[two.body]) @ y)),
-            moment_2=self.moment[two.body] - R_2[:, 1] * (R_2[:, 1] @ self.moment[two.body]),
-            moment_4=moment - aside * (aside @ moment),
+            moment_2=_across(self.moment[two.body], R_2[:, 1]),
+            moment_3=np.where(abs(own) > SMALL * (self.mass[three.body] + share) * size, own, 0.0),
+            moment_4=_across(moment, aside),
             load=sum(self.mass[link.body] for link in chain[1:]) + share,
+            misprint=(self.mass[four.body] - self.mass[five.body]) * size,
         )
 
     def _on_axis(self, link: Link, R_W3: Array, where: str) -> None:
-        """Links 3 and 5 turn by psi: a mass centre off the line along B would need a spring of its own."""
+        """Link 5 turns by psi: a mass centre off the line along E would need a spring of its own."""
         moment = R_W3.T @ self.R[link.body] @ self.moment[link.body]
         lever = max(abs(moment[0]), abs(moment[2])) / max(self.mass[link.body], 1e-300)
         self._want(lever, f"the mass centre of {where}: it is {1e3 * lever:.3g} mm off")
@@ -249,3 +255,8 @@ class _Reader:
     def _want(self, deviation: float, otherwise: str) -> None:
         if deviation > SMALL:
             raise NotDelta(otherwise)
+
+
+def _across(moment: Array, axis: Array) -> Array:
+    """A mass moment without its part along a unit axis, which a turn does not lift."""
+    return moment - axis * (axis @ moment)

@@ -6,6 +6,7 @@ the platform, spring 11 the guide, and spring 7 all that hangs on link 2.
 
 axis: one spring 7 per leg (section 6, Eqs. 14-15), best where the platform moves on the vertical axis, and exact there
 if AB = CD and the axes of E are below those of A. optimum: the same springs, chosen over a stated workspace instead.
+rocker: a two-axis rocker by itself, with the guide and springs 10 and 11 (section 4).
 """
 
 from __future__ import annotations
@@ -21,15 +22,17 @@ from ...model.errors import Fault, InputError
 from ...model.mechanism import Body, Joint, Mechanism
 from ...model.rotation import to_rpy
 from ...model.units import Amount
+from ..arms.shoulder import find
 from ..design import Design
 from ..given import number
 from ..method import Method
 from ..options import MethodOptions, option, takes
+from . import two_axis
 from .legs import DeltaLeg, NotDelta, delta_legs
-from .rocker import Guide, TwoAxisRocker, rocker_spring, vec3
+from .rocker import EQUATION_10, Guide, TwoAxisRocker, rocker_spring, vec3
 from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 
-Variant = Literal["full", "axis", "optimum"]
+Variant = Literal["full", "axis", "optimum", "rocker"]
 VARIANTS: tuple[str, ...] = get_args(Variant)
 
 
@@ -38,12 +41,12 @@ class DeltaOptions(MethodOptions):
     """What the method delta can be asked for.
 
     Attributes:
-        variant: full, axis or optimum; see the module.
+        variant: full, axis, optimum or rocker; see the module. By default what suits the mechanism, full or rocker.
         AV, AW: where spring 7 is attached [m]: V on link 2, W above A.
         spring_7: its mass [kg], `share_7` of it at V.
         link_2p: mass of each link 2' [kg], its mass centre half way along; full only.
-        BF, CS, FU, FT, FG8, link_8, link_9, frame, spring_10, spring_11, share_10, share_11, printed: of full only; see
-            `rocker.Guide`, whose defaults they have.
+        BF, CS, FU, FT, FG8, link_8, link_9, frame, spring_10, spring_11, share_10, share_11, m3Q, equation_10: of full
+            and rocker only; see `rocker.Guide`, whose defaults they have.
         heights: smallest and largest depth of the platform below the base [m], of axis and optimum; by default the
             middle half of what the rods allow.
         reach: of optimum: the platform within +-reach of the axis, both ways [m]; axis is judged there too.
@@ -51,7 +54,9 @@ class DeltaOptions(MethodOptions):
         samples, seed: random places of the platform.
     """
 
-    variant: Variant = option("full", "text", "how many springs per leg, and for what (default full)", VARIANTS)
+    variant: Variant | None = option(
+        None, "text", "how many springs per leg, and for what (default full); rocker: two axes alone", VARIANTS
+    )
     AV: Amount = option(0.25, "length", "A to where spring 7 is attached to link 2 (default 250 mm)")
     AW: Amount = option(0.3, "length", "A to where spring 7 is attached above it (default 300 mm)")
     spring_7: Amount = option(0.0, "mass", "of each spring 7 (default 0)")
@@ -69,8 +74,9 @@ class DeltaOptions(MethodOptions):
     spring_11: Amount | None = option(None, "mass", "full: of each spring 11 (default 0)")
     share_10: Amount | None = option(None, "share", "full: of the mass of spring 10 that counts at S (default 50 %)")
     share_11: Amount | None = option(None, "share", "full: of the mass of spring 11 that counts at U (default 50 %)")
-    printed: bool | None = option(
-        None, "flag", "full: spring 11 by Eq. (10) as printed, exact only if BF = 2 CS (default no)"
+    m3Q: Amount | None = option(None, "mass", "full: of link 3's bar that hangs at Q, on the slider (default 0)")
+    equation_10: str | None = option(
+        None, "text", "full: spring 11 exact, by Eq. (10) mended (exact if BF = 2 CS), or literally", EQUATION_10
     )
     heights: Sequence[Amount] | None = option(
         None, "length", "axis, optimum: LOW,HIGH of the platform below the base", many=True
@@ -85,12 +91,14 @@ class DeltaOptions(MethodOptions):
 
 @takes(DeltaOptions)
 def design(mechanism: Mechanism, options: DeltaOptions) -> Design:
-    """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes.
+    """Springs for a DELTA robot with real loops, such as `DeltaRobot` makes, or for a two-axis rocker.
 
     Raises:
         InputError: a value out of range, or a workspace that the robot does not reach.
     """
     variant = options.variant
+    if variant is None:
+        variant = "rocker" if _is_rocker(mechanism) else "full"
     if variant not in VARIANTS:
         raise InputError(Fault(("variant",), f"there is no '{variant}'", VARIANTS))
     spring = {name: getattr(options, name) for name in ("AV", "AW", "spring_7", "share_7")}
@@ -98,12 +106,18 @@ def design(mechanism: Mechanism, options: DeltaOptions) -> Design:
         if not spring[name] > 0:
             raise InputError(Fault((name,), f"must be more than 0 m, found {spring[name]:g}"))
     guide = {f.name: value for f in fields(Guide) if (value := getattr(options, f.name)) is not None}
+    if variant == "rocker":
+        shoulder, reasons = find(mechanism.with_springs(()))
+        if shoulder is None:
+            raise InputError(f"'{mechanism.name}' is no two-axis rocker: {'; '.join(reasons)}")
+        parts = Guide(**guide)
+        made = two_axis.balanced(mechanism, shoulder, parts)
+        return Design.of(made, "delta", {"variant": variant, **_used(parts)})
     if variant == "full":
         parts = Guide(**guide)
         link_2p = number("link_2p", options.link_2p, positive=False)
         made = full(mechanism, parts, link_2p=link_2p, **spring)
-        used = {f.name: getattr(parts, f.name) for f in fields(parts)}
-        return Design.of(made, "delta", {"variant": variant, **spring, "link_2p": link_2p, **used})
+        return Design.of(made, "delta", {"variant": variant, **spring, "link_2p": link_2p, **_used(parts)})
     for name in guide:
         raise InputError(Fault((name,), f"variant '{variant}' has no such option"))
     goal: Goal = "axis" if variant == "axis" else options.objective
@@ -137,8 +151,19 @@ def applies(mechanism: Mechanism) -> list[str]:
     try:
         delta_legs(mechanism)
     except (NotDelta, InputError) as why:
-        return [str(why)]
+        return [] if _is_rocker(mechanism) else [str(why)]
     return []
+
+
+def _is_rocker(mechanism: Mechanism) -> bool:
+    """Whether it is a two-axis rocker that is not geared already."""
+    if mechanism.loops or mechanism.couplings or not any(mechanism.gravity):
+        return False
+    return find(mechanism.with_springs(()))[0] is not None
+
+
+def _used(guide: Guide) -> dict[str, Any]:
+    return {f.name: getattr(guide, f.name) for f in fields(guide)}
 
 
 def full(
@@ -161,7 +186,17 @@ def full(
         ]
         angle = tuple(zip(leg.joints, leg.signs, strict=True))
         rocker = TwoAxisRocker(
-            f"frame 12{mark}", (0.0, 0.0, 0.0), three, leg.R_3, angle, leg.zero_3, four, leg.C, leg.moment_4
+            f"frame 12{mark}",
+            (0.0, 0.0, 0.0),
+            three,
+            leg.R_3,
+            angle,
+            leg.zero_3,
+            four,
+            leg.C,
+            leg.moment_4,
+            leg.moment_3,
+            leg.misprint,
         )
         bodies += rocker.bodies(guide, mark)
         joints += rocker.joints(guide, mark)
@@ -190,7 +225,7 @@ def _legs(mechanism: Mechanism) -> tuple[tuple[DeltaLeg, ...], str]:
 
 METHOD = Method(
     "delta",
-    "a DELTA robot: full, exact with three springs per leg and a guide; or one spring per leg, approximate",
+    "a DELTA robot: exact with three springs per leg and a guide, or one per leg, approximate; or a two-axis rocker",
     "Simionescu, Ciupitu and Ionita, Mechanism and Machine Theory 87 (2015), doi 10.1016/j.mechmachtheory.2014.11.008",
     applies,
     design,

@@ -14,7 +14,7 @@ upright at psi = 0, where link 8 points up too.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -23,6 +23,10 @@ from ...model.elements import Spring, Vec3
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Body, Coupling, Joint
 from ...model.rotation import to_rpy
+
+Z = np.array([0.0, 0.0, 1.0])
+
+EQUATION_10 = ("exact", "mended", "literal")
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,8 @@ class Guide:
             (link 12, which carries F) translates with B.
         spring_10, spring_11: masses of the springs.
         share_10, share_11: what share of them counts at S and at U; the rest counts at R and at T.
-        printed: the stiffness of spring 11 by Eq. (8) as printed, exact only if BF = 2 CS.
+        m3Q: mass of the cross link's bar that hangs at Q, where the slider is.
+        equation_10: how spring 11 gets its stiffness; see `stiffness_11`.
     """
 
     BF: float = 0.1
@@ -50,15 +55,18 @@ class Guide:
     spring_11: float = 0.0
     share_10: float = 0.5
     share_11: float = 0.5
-    printed: bool = False
+    m3Q: float = 0.0
+    equation_10: str = "exact"
 
     def __post_init__(self) -> None:
         lengths = ("BF", "CS", "FU", "FT")
+        if self.equation_10 not in EQUATION_10:
+            raise InputError(Fault(("equation_10",), f"there is no '{self.equation_10}'", EQUATION_10))
         for f in fields(self):
             value = getattr(self, f.name)
             if f.name in lengths and not value > 0:
                 raise InputError(Fault((f.name,), f"must be more than 0 m, found {value:g}"))
-            if f.name.startswith(("link", "frame", "spring")) and not value >= 0:
+            if f.name.startswith(("link", "frame", "spring", "m3Q")) and not value >= 0:
                 raise InputError(Fault((f.name,), f"must be at least 0 kg, found {value:g}"))
             if f.name.startswith("share") and not 0 <= value <= 1:
                 raise InputError(Fault((f.name,), f"must be between 0 and 1, found {value:g}"))
@@ -71,15 +79,22 @@ class Guide:
         """
         return gravity * self._carried(moment) / (self.CS * 2 * self.BF)
 
-    def stiffness_11(self, moment: float, gravity: float) -> float:
-        """Of spring 11 [N/m], from the energy: ``k11 FU FT = g (guide's moment about F) + k10 BF^2``.
+    def stiffness_11(self, moment: float, gravity: float, misprint: float = 0.0) -> float:
+        """Of spring 11 [N/m]: exact, from the energy, ``k11 FU FT = g (guide's moment about F) + k10 BF^2``.
 
-        Eqs. (8) and (10) print ``g (moment + m10S CS)`` in the place of ``k10 BF^2 = g (moment + m10S CS) BF/(2 CS)``.
+        Eqs. (8) and (10) have ``g (moment + m10S CS)`` in the place of ``k10 BF^2 = g (moment + m10S CS) BF/(2 CS)``:
+        "mended" is that, exact only if BF = 2 CS. Eq. (10) besides prints m4 for m5 and m11 for m11U: "literal".
+
+        Args:
+            moment, gravity: as for `stiffness_10`.
+            misprint: (m4 - m5) CD [kg m], what the literal Eq. (10) adds to the moment.
         """
-        weights = self.link_8 * self.FG8 + (self.link_9 + (1 - self.share_10) * self.spring_10) * self.BF
-        weights += self.share_11 * self.spring_11 * self.FU
-        extra = self._carried(moment) * (1.0 if self.printed else self.BF / (2 * self.CS))
-        return gravity * (weights + extra) / (self.FU * self.FT)
+        literal = self.equation_10 == "literal"
+        weights = self.link_8 * self.FG8
+        weights += (self.link_9 + self.m3Q + (1 - self.share_10) * self.spring_10) * self.BF
+        weights += (1.0 if literal else self.share_11) * self.spring_11 * self.FU
+        extra = self._carried(moment) * (self.BF / (2 * self.CS) if self.equation_10 == "exact" else 1.0)
+        return gravity * (weights + extra + literal * misprint) / (self.FU * self.FT)
 
     def _carried(self, moment: float) -> float:
         return moment + self.share_10 * self.spring_10 * self.CS
@@ -87,7 +102,7 @@ class Guide:
     @property
     def mass(self) -> float:
         """Of all that the guide adds [kg]: it loads the axis B."""
-        return self.frame + self.link_8 + self.link_9 + self.spring_10 + self.spring_11
+        return self.frame + self.link_8 + self.link_9 + self.m3Q + self.spring_10 + self.spring_11
 
 
 @frozen
@@ -101,6 +116,9 @@ class TwoAxisRocker:
         angle: psi as ``offset + sum(ratio * joint)``.
         rocker: link 4; C: of the rocker's joint along B, from the cross link's own joint [m].
         moment: (3,) mass moment about C of what turns about C, in the rocker's frame [kg m]; perpendicular to C.
+        own: (3,) that of link 3 itself about B, in its body frame [kg m]; perpendicular to B.
+        misprint: see `Guide.stiffness_11` [kg m].
+        places: where B's joint is in link 3's body, and where C meets B in the rocker's [m].
     """
 
     upright: str
@@ -112,11 +130,14 @@ class TwoAxisRocker:
     rocker: str
     C: float
     moment: Array
+    own: Array
+    misprint: float = 0.0
+    places: tuple[Vec3, Vec3] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def bodies(self, guide: Guide, mark: str) -> Iterator[Body]:
         """Link 8 and slider 9; `mark` ends their names."""
         yield Body(f"guide 8{mark}", guide.link_8, (0.0, 0.0, guide.FG8))
-        yield Body(f"slider 9{mark}", guide.link_9)
+        yield Body(f"slider 9{mark}", guide.link_9 + guide.m3Q)
 
     def joints(self, guide: Guide, mark: str) -> Iterator[Joint]:
         """F, and the slider: carried by link 8, turned as the cross link."""
@@ -130,15 +151,19 @@ class TwoAxisRocker:
         return Coupling(f"F{mark}", tuple((name, 2 * ratio) for name, ratio in self.angle), 2 * self.offset)
 
     def springs(self, guide: Guide, mark: str, gravity: float) -> Iterator[Spring]:
-        """Springs 10 and 11."""
+        """Springs 10 and 11, and one of Eq. (3) for link 3 where its mass centre is off the axis B."""
         size = float(np.linalg.norm(self.moment))
-        S = vec3(guide.CS * self.moment / size)
-        k10, k11 = guide.stiffness_10(size, gravity), guide.stiffness_11(size, gravity)
+        S = vec3(np.array(self.places[1]) + guide.CS * self.moment / size)
+        k10, k11 = guide.stiffness_10(size, gravity), guide.stiffness_11(size, gravity, self.misprint)
         R, T = (0.0, self.C, 0.0), (self.at[0], self.at[1], self.at[2] + guide.BF + guide.FT)
         ten = {"mass": guide.spring_10, "mass_split": 1 - guide.share_10}
         yield Spring(f"spring 10{mark}", f"slider 9{mark}", R, self.rocker, S, k10, **ten)
         eleven = {"mass": guide.spring_11, "mass_split": 1 - guide.share_11}
         yield Spring(f"spring 11{mark}", self.upright, T, f"guide 8{mark}", (0.0, 0.0, guide.FU), k11, **eleven)
+        if self.own.any():
+            lengths, B = (guide.BF, guide.BF), np.array(self.at)
+            three = rocker_spring(f"spring 3{mark}", self.own, self.cross, Z, B, lengths, gravity, base=self.upright)
+            yield replace(three, p_b=vec3(np.array(self.places[0]) + three.p_b))
 
 
 def rocker_spring(
@@ -150,19 +175,20 @@ def rocker_spring(
     lengths: tuple[float, float],
     gravity: float,
     mass: tuple[float, float] = (0.0, 0.5),
+    base: str = "world",
 ) -> Spring:
     """Spring 7 of a rocker (Eq. 3): ``k AV AW = g (moment + m7V AV)``, V along the rocker's mass moment, W above A.
 
     Args:
         moment: (3,) mass moment of all that hangs on the rocker about A, in its frame [kg m].
-        up: (3,) unit vector; A: (3,) point of the axis, both in the world.
+        up: (3,) unit vector; A: (3,) point of the axis, both in the frame of `base`, which stays upright.
         lengths: AV, AW [m].
         mass: of the spring [kg], and the share of it at V.
     """
     size, (AV, AW), (m7, share) = float(np.linalg.norm(moment)), lengths, mass
     k = gravity * (size + share * m7 * AV) / (AV * AW)
     V, W = vec3(AV * moment / size), vec3(A + AW * up)
-    return Spring(name, "world", W, rocker, V, k, mass=m7, mass_split=1 - share)
+    return Spring(name, base, W, rocker, V, k, mass=m7, mass_split=1 - share)
 
 
 def vec3(p: Array) -> Vec3:

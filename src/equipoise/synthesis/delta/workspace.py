@@ -13,6 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ...energy.evaluate import Potential
+from ...energy.extremes import apart, ascend
 from ...kinematics import Tree
 from ...model.arrays import Array
 from ...model.elements import Spring
@@ -26,6 +27,10 @@ Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[str, ...] = get_args(Objective)
 Goal = Literal["axis", "rms", "peak"]
 LEVELS = 101  # heights on the axis
+GRID = (9, 9, 7)  # places along the sides of the box, the corners among them
+STARTS, ROUNDS = 4, 12  # of the search for the largest torque of each leg
+CUTS = 6  # times the worst place joins the program for the least peak
+NEAR = 1e-6  # of the peak: how well it is known
 
 
 @dataclass(frozen=True)
@@ -63,12 +68,24 @@ class Box:
         return Box(vec3(centre), (float(heights[0]), float(heights[1])), reach)
 
     def places(self, legs: Sequence[DeltaLeg], samples: int, seed: int) -> Array:
-        """(samples, 3) random places in the world [m]."""
+        """(samples + grid, 3) places in the world [m]: random ones, and a grid with the corners of the box."""
         rng = np.random.default_rng(seed)
-        own = rng.uniform([-self.reach, -self.reach, -self.heights[1]], [self.reach, self.reach, -self.heights[0]],
-                          (samples, 3))  # fmt: skip
+        grid = np.stack(np.meshgrid(*(np.linspace(0, 1, count) for count in GRID)), axis=-1).reshape(-1, 3)
+        return self.at(legs, np.concatenate([rng.random((samples, 3)), grid]))
+
+    def at(self, legs: Sequence[DeltaLeg], share: Array) -> Array:
+        """(N, 3) places in the world [m] of shares (N, 3) of the box's sides."""
+        lower, upper = ([-self.reach, -self.reach, -self.heights[1]], [self.reach, self.reach, -self.heights[0]])
+        own = np.array(lower) + share * np.subtract(upper, lower)
         x, y = legs[0].R_WL[:, 0], legs[0].R_WL[:, 1]
         return np.array(self.centre) + own @ np.array([x, y, legs[0].R_WL[:, 2]])
+
+    def share(self, legs: Sequence[DeltaLeg], P: Array) -> Array:
+        """The inverse of `at`."""
+        own = (P - np.array(self.centre)) @ legs[0].R_WL
+        side = np.array([2 * self.reach, 2 * self.reach, self.heights[1] - self.heights[0]])
+        lower = np.array([-self.reach, -self.reach, -self.heights[1]])
+        return np.where(side > 0, (own - lower) / np.where(side > 0, side, 1.0), 0.0)
 
     def axis(self, legs: Sequence[DeltaLeg]) -> Array:
         """(LEVELS, 3) places on the axis."""
@@ -99,25 +116,71 @@ def best_springs(
         InputError: the robot does not reach all of the box.
     """
     whole_number("samples", samples, 1, MAX_SAMPLES)
-    on_axis = _torques(mechanism, legs, box.axis(legs), lengths, mass)
-    in_box = _torques(mechanism, legs, box.places(legs, samples, seed), lengths, mass)
+    judged = _Judged(mechanism, tuple(legs), box, lengths, mass)
+    on_axis = judged.torques(box.axis(legs)).reshape(-1, 4)
+    P = box.places(legs, samples, seed)
+    in_box = judged.torques(P)
     paper = _least_squares(on_axis[:, 1:3])
-    chosen = paper if objective == "axis" else (_least_peak if objective == "peak" else _least_squares)(in_box[:, 1:])
+    if objective == "axis":
+        chosen = paper
+    elif objective == "rms":
+        chosen = _least_squares(in_box[:samples].reshape(-1, 4)[:, 1:])
+    else:
+        chosen = _least_peak(judged, P, in_box)
     numbers = {
         "stiffness": float(np.hypot(*_both(chosen))) / lengths[1],
-        "unbalanced_peak": float(np.abs(in_box[:, 0]).max()),
-        "residual_peak": _peak(in_box[:, 1:], chosen),
+        "unbalanced_peak": judged.peak(P, in_box, None)[0],
+        "residual_peak": judged.peak(P, in_box, chosen)[0],
     }
     if objective != "axis":
-        numbers["axis_formula_peak"] = _peak(in_box[:, 1:], paper)
+        numbers["axis_formula_peak"] = judged.peak(P, in_box, paper)[0]
         numbers["times_better"] = numbers["axis_formula_peak"] / numbers["residual_peak"]
     return Found(mechanism.with_springs(_springs(legs, _both(chosen), lengths, mass)), numbers)
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """A robot with springs 7 of given lengths and mass, judged in a box."""
+
+    mechanism: Mechanism
+    legs: tuple[DeltaLeg, ...]
+    box: Box
+    lengths: tuple[float, float]
+    mass: tuple[float, float]
+
+    def torques(self, P: Array) -> Array:
+        """(places, legs, 4) torque at A: gravity's without springs, with their masses, of k W = 1 N up, out."""
+        return _torques(self.mechanism, self.legs, P, self.lengths, self.mass)
+
+    def peak(self, P: Array, torques: Array, p: Array | None) -> tuple[float, Array]:
+        """The largest torque in the box [N m] with springs `p`, or without any, and (3,) where [m].
+
+        Each leg climbs from several of its worst places `P`, whose `torques` are known, to the edges if need be.
+        """
+        shares = self.box.share(self.legs, P)
+        values = _left(torques, p)
+        starts = [apart(values[:, leg], shares, STARTS) for leg in range(values.shape[1])]
+        which = np.repeat(np.arange(len(starts)), [len(start) for start in starts])
+
+        def left(share: Array) -> Array:
+            return _left(self.torques(self.box.at(self.legs, share)), p)
+
+        found, where = ascend(left, shares[np.concatenate(starts)], which, np.zeros(3), np.ones(3), ROUNDS)
+        best = int(found.argmax())
+        return float(found[best]), self.box.at(self.legs, where[best : best + 1])[0]
+
+
+def _left(torques: Array, p: Array | None) -> Array:
+    """(places, legs) magnitude of the torque with springs `p`, or without any."""
+    if p is None:
+        return np.abs(torques[..., 0])
+    return np.abs(torques[..., 1] + torques[..., 2 : 2 + len(p)] @ p)
 
 
 def _torques(
     mechanism: Mechanism, legs: Sequence[DeltaLeg], P: Array, lengths: tuple[float, float], mass: tuple[float, float]
 ) -> Array:
-    """(places x legs, 4) torque at A: gravity's without springs, with their masses, of k W = 1 N upwards, outwards."""
+    """See `_Judged.torques`."""
     names = [leg.joints[0] for leg in legs]
     coordinates = Tree.of(mechanism).coordinates
     if set(coordinates) != set(names):
@@ -130,7 +193,7 @@ def _torques(
     )
     if not np.isfinite(bare).all():
         raise InputError(Fault(("reach",), "the robot does not reach all of the workspace; make it smaller"))
-    return np.stack([bare, up.gravity_torque, up.spring_torque, out.spring_torque], axis=2).reshape(-1, 4)
+    return np.stack([bare, up.gravity_torque, up.spring_torque, out.spring_torque], axis=2)
 
 
 def _springs(
@@ -153,19 +216,23 @@ def _both(p: Array) -> tuple[float, float]:
     return float(p[0]), float(p[1]) if len(p) > 1 else 0.0
 
 
-def _peak(torques: Array, p: Array) -> float:
-    return float(np.abs(torques[:, 0] + torques[:, 1 : 1 + len(p)] @ p).max())
-
-
 def _least_squares(torques: Array) -> Array:
     return np.asarray(np.linalg.lstsq(torques[:, 1:], -torques[:, 0], rcond=None)[0], float)
 
 
-def _least_peak(torques: Array) -> Array:
-    """Minimise t with ``|gravity + springs p| <= t``: a linear program."""
+def _least_peak(judged: _Judged, P: Array, torques: Array) -> Array:
+    """Minimise t with ``|gravity + springs p| <= t``: a linear program, until its worst place is one of its own."""
     from scipy.optimize import linprog
 
-    ones = -np.ones(len(torques))
-    A = np.vstack([np.column_stack([sign * torques[:, 1:], ones]) for sign in (1, -1)])
-    b = np.concatenate([-torques[:, 0], torques[:, 0]])
-    return linprog([0, 0, 1], A_ub=A, b_ub=b, bounds=[(None, None), (None, None), (0, None)]).x[:2]
+    rows, p = torques[..., 1:].reshape(-1, 3), np.zeros(2)
+    for _ in range(CUTS):
+        ones = -np.ones(len(rows))
+        A = np.vstack([np.column_stack([sign * rows[:, 1:], ones]) for sign in (1, -1)])
+        b = np.concatenate([-rows[:, 0], rows[:, 0]])
+        *p, t = linprog([0, 0, 1], A_ub=A, b_ub=b, bounds=[(None, None), (None, None), (0, None)]).x
+        p = np.array(p)
+        peak, where = judged.peak(P, torques, p)
+        if peak <= (1 + NEAR) * t:
+            break
+        rows = np.vstack([rows, judged.torques(where[None])[..., 1:].reshape(-1, 3)])
+    return p

@@ -244,3 +244,8 @@ def _owners(mechanism: Mechanism, links: tuple[str, ...]) -> dict[str, int]:
         if link.joint.child not in owner:
             owner[link.joint.child] = owner[link.joint.parent]
     return owner
+
+
+def upward(i: int) -> complex:
+    """The direction that a spring's `a` on link i is counted along, in the frame of that link."""
+    return 1j if i == 1 else 1.0

@@ -71,6 +71,32 @@ def sign_failures(arm: PlanarArm, springs: Sequence[Installation]) -> Iterator[F
             yield Failure(criterion, f"at links 1-{v - 1}: no spring with angles (90, 0) or (270, 180) deg")
 
 
+def span_failures(n: int, springs: Sequence[Installation]) -> Iterator[Failure]:
+    """What Eqs. (31) and (32) ask of the ground's springs, for the smallest span, and these do not have.
+
+    A spring between neighbours, on link 2, has two equivalent installations: (90, 0) deg is (270, 180).
+    """
+    angles = {one.k: {(90 if one.a.imag > 0 else 270, 0 if one.b.real > 0 else 180)} for one in springs if one.i == 1}
+    if 2 in angles:
+        angles[2] |= {((alpha + 180) % 360, 180 - beta) for alpha, beta in angles[2]}
+    for v in range(3, n + 1):
+        above, below = angles.get(v, set()), angles.get(v - 1)
+        if above & {(90, 0), (90, 180)}:
+            allowed = {(90, 180)} | ({(90, 0)} if v == 4 else set())
+            wrong = below is not None and (v == 3 or not below & allowed)
+            text, equation = "none" if v == 3 else f"none or one at {_degrees(allowed)}", "(31)"
+        else:
+            allowed = {(270, 180)} | ({(90, 0)} if v < 5 else set())
+            wrong, text, equation = not (below and below & allowed), f"one at {_degrees(allowed)}", "(32)"
+        if wrong:
+            found = f"one at {_degrees(below)}" if below else "none"
+            yield Failure(equation, f"at link {v - 1}: {text} from the ground, found {found}")
+
+
+def _degrees(angles: set[tuple[int, int]]) -> str:
+    return " or ".join(map(str, sorted(angles))) + " deg"
+
+
 def _rank(layout: Layout, n: int) -> Iterator[Failure]:
     if len(layout) < n - 1:
         yield Failure("rank", f"bound: {n} links need {n - 1} springs, it has {len(layout)}")

@@ -3,7 +3,8 @@
 The equations say that the blocks off the diagonal vanish (Lee and Chen 2014, Eq. (23); `energy.blocks`). Written with
 ``v = sqrt(k) (.., -a, r_{i+1}, .., r_{k-1}, b, ..)`` for each spring, they are ``sum conj(v_u) v_v = 0`` and, in the
 ground's row, ``= g M_v``; and the stored energy is ``1/2 sum |v|^2``, a sum of squares too. So least squares on both,
-the energy weighted less and less, leads to solutions that store little, and Newton's steps then make them exact.
+the energy weighted less and less, leads to solutions that store little, and Newton's steps then make them exact. Where
+that finds nothing, least squares on the equations alone does.
 
 Attachments are measured along each link; on the ground along the upward vertical, where Eq. (24) wants them. On a
 straight arm they are real: on the link's line.
@@ -12,13 +13,14 @@ straight arm they are real: on the link's line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import inf, log
 
 import numpy as np
 
 from ...model.arrays import Array, Booleans, Complexes, frozen
-from .arm import Installation, PlanarArm
+from .arm import Installation, PlanarArm, upward
+from .elongation import ROOM, Elongation
 from .exclusion import Layout
 from .stiffness_blocks import StiffnessBlocks
 
@@ -29,6 +31,8 @@ SMALL, LARGE = 0.02, 1e3  # attachments of a spring that belongs to its layout, 
 SOFT = 1e-4  # of the stiffest spring: softer ones count as absent
 EXACT = 1e-13  # of the largest moment
 FIT = 30  # evaluations: further ones would only trade the equations for energy
+PATIENCE = 8  # starts without a solution, after which the energy does not count
+PLAIN = 300  # evaluations without the energy
 LIMITS = (1.5, 3.0, 6.0, inf)  # in longest links: tried in turn when no limit is given
 STIFFNESS, A, B = range(3)
 
@@ -36,23 +40,20 @@ Fixed = Mapping[tuple[int, int], float]
 """(number of the spring, STIFFNESS or A or B) -> its value [N/m or m]; a and b along the link, the ground's upwards."""
 
 
-def upward(i: int) -> complex:
-    """The direction that a spring's `a` on link i is counted along, in the frame of that link."""
-    return 1j if i == 1 else 1.0
-
-
-@dataclass(frozen=True)
+@frozen
 class Equations:
     """The equations of a layout on an arm, in units of its longest link and its largest moment.
 
     Attributes:
         limit: [m] of |a| and |b|, infinite for none.
+        elongation: how long springs may get; None for any length.
     """
 
     arm: PlanarArm
     layout: Layout
     limit: float = inf
     fixed: Fixed = field(default_factory=dict)
+    elongation: Elongation | None = None
 
     @property
     def size(self) -> float:
@@ -140,8 +141,8 @@ class Equations:
     def _real(self, z: Complexes) -> Array:
         return z.real if self.width == 3 else np.concatenate([z.real, z.imag])
 
-    def fit(self, x: Array, weight: float) -> Array:
-        """Least squares on the blocks, the weighted root of the energy, and what sticks out of the limit."""
+    def fit(self, x: Array, weight: float, evaluations: int = FIT) -> Array:
+        """Least squares on the blocks, the weighted root of the energy, and what sticks out of the limits."""
         from scipy.optimize import least_squares
 
         free, shape = self.free(), x.shape
@@ -153,7 +154,8 @@ class Equations:
 
         def rows(y: Array) -> Array:
             z = full(y)
-            return np.concatenate([self.blocks(z)[0], weight * self._real(self.vectors(z)[0].ravel()), self._out(z)[0]])
+            stored = weight * self._real(self.vectors(z)[0].ravel())
+            return np.concatenate([self.blocks(z)[0], stored, self._out(z)[0], self._stretched(z)[0]])
 
         def slopes(y: Array) -> Array:
             z = full(y)
@@ -162,9 +164,9 @@ class Equations:
             for s in range(len(z)):
                 energy[s, :, s] = D[s].T
             stored = weight * self._real(energy.reshape(len(z) * self.arm.n, -1))
-            return np.concatenate([self.blocks(z)[1], stored, self._out(z)[1]])[:, free]
+            return np.concatenate([self.blocks(z)[1], stored, self._out(z)[1], self._stretched(z)[1]])[:, free]
 
-        found = least_squares(rows, x.ravel()[free], jac=slopes, max_nfev=FIT)  # pyright: ignore[reportArgumentType]
+        found = least_squares(rows, x.ravel()[free], jac=slopes, max_nfev=evaluations)  # pyright: ignore[reportArgumentType]
         return full(found.x)
 
     def _out(self, x: Array) -> tuple[Array, Array]:
@@ -172,11 +174,18 @@ class Equations:
         half = (self.width - 1) // 2
         ends = x[:, 1:].reshape(-1, 2, half)
         far = np.linalg.norm(ends, axis=-1)
-        over = far - 0.98 * self.limit / self.size
+        over = far - ROOM * self.limit / self.size
         J = np.zeros((len(x), 2, len(x), self.width))
         for s, end in zip(*np.nonzero(over > 0), strict=True):
             J[s, end, s, 1 + end * half : 1 + (end + 1) * half] = 10 * ends[s, end] / far[s, end]
         return 10 * np.maximum(over, 0).ravel(), J.reshape(2 * len(x), -1)
+
+    def _stretched(self, x: Array) -> tuple[Array, Array]:
+        """Rows (springs,) that are 0 for springs that are short enough, and their derivative."""
+        if self.elongation is None:
+            return np.zeros(0), np.zeros((0, x.size))
+        _, a, b = self.unpacked(x)
+        return self.elongation.rows(self.layout, self.arm.lengths, self.size, a, b, (self.width - 1) // 2)
 
     def newton(self, x: Array, steps: int = 40) -> Array | None:
         """The nearest exact solution, or None."""
@@ -199,6 +208,8 @@ class Equations:
         inside = ends.min() >= SMALL and ends.max() <= min(LARGE, self.limit / self.size)
         if not inside or k.min() < SOFT * k.max():
             return None
+        if self.elongation is not None and not self.elongation.holds(self.layout, self.arm.lengths, self.size, a, b):
+            return None
         stiffness, size = k * self.energy / self.size**2, self.size
         return tuple(
             Installation(i, j, float(stiffness[s]), complex(a[s] * size * upward(i)), complex(b[s] * size))
@@ -207,7 +218,8 @@ class Equations:
 
     def _settled(self, k: Array, a: Complexes, b: Complexes) -> tuple[Array, Complexes, Complexes]:
         """A spring between neighbours acts by k a b alone: its ends are put half a link, or limit, out."""
-        half = min(1.0, self.limit / self.size) / 2
+        longest = inf if self.elongation is None else self.elongation.longest
+        half = min(self.size, self.limit, longest) / self.size / 2
         held = {spring for spring, _ in self.fixed}
         for s, (i, j) in enumerate(self.layout):
             if j == i + 1 and s not in held and a[s] and b[s]:
@@ -229,8 +241,11 @@ class Equations:
         found: list[Installed] = []
         for number in range(starts):
             x = self.held(near) if number == 0 and near is not None else self.start(generator)
-            for weight in WEIGHTS:
-                x = self.fit(x, weight)
+            if number < PATIENCE or found:
+                for weight in WEIGHTS:
+                    x = self.fit(x, weight)
+            else:
+                x = self.fit(x, 0.0, PLAIN)
             x = self.newton(x)
             springs = None if x is None else self.installed(x)
             if x is not None and springs is not None:
@@ -263,16 +278,18 @@ def solve(
     fixed: Fixed | None = None,
     seed: int = 0,
     enough: int = ENOUGH,
+    elongation: Elongation | None = None,
 ) -> Installed | None:
     """Springs of a layout that balance the arm and store little, None when none were found.
 
     Args:
         limit: [m] of the attachments; without one they are kept as close as some multiple of the longest link.
+        elongation: how long springs may get; None for any length.
         enough: solutions to choose from.
     """
     size = Equations(arm, layout).size
     for most in (limit,) if limit is not None else (share * size for share in LIMITS):
-        found = Equations(arm, layout, most, fixed or {}).solve(seed, enough=enough)
+        found = Equations(arm, layout, most, fixed or {}, elongation).solve(seed, enough=enough)
         if found is not None:
             return found
     return None

@@ -9,7 +9,7 @@ given stiffnesses or attachments, a limit on the attachments.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import isinf, log
 from typing import Any
@@ -25,12 +25,16 @@ from ..design import Design
 from ..given import Given, number, numbers
 from ..method import Method
 from ..options import MethodOptions, option, takes
-from .arm import PlanarArm, obstacles
+from .arm import Installation, PlanarArm, obstacles, upward
 from .criteria import failures
+from .elongation import Elongation
+from .equivalent import exchanged
 from .exclusion import Layout, prove
-from .installing import STIFFNESS, A, B, Equations, Fixed, Installed, solve, upward
+from .installing import STIFFNESS, A, B, Fixed, Installed, solve
 from .layouts import Excluded, default_layout, labels, name
 
+ENDS = ("lower", "upper")
+NEAR = 1e-6  # relative: how much longer than allowed is not
 STOCK = 200  # choices from stock that are tried
 NEAREST = 4  # stiffnesses in stock to choose from, for each spring
 
@@ -49,6 +53,8 @@ class PlanarOptions(MethodOptions):
             join the same links. `a` is counted from the joint of the lower link along that link, the ground's upwards;
             `b` from the joint of the upper link along it; negative values lie on the other side.
         stock: the stiffnesses to choose from [N/m].
+        longest: [m] that a spring gets in any pose.
+        exchange: ``14:lower`` for two springs 14 as 14 and 24 in the end, Eq. (28a), ``14:upper`` as 14 and 13, (28b).
         seed: of the random starts.
     """
 
@@ -62,6 +68,10 @@ class PlanarOptions(MethodOptions):
     )
     b: Given = option(None, "length", "of a spring, along its upper link from the near joint", each=True)
     stock: Sequence[Amount] | None = option(None, "stiffness", "K,K,...: stiffnesses to choose from", many=True)
+    longest: Amount | None = option(None, "length", "that a spring gets in any pose (default: no limit)")
+    exchange: str | None = option(
+        None, "text", "14:lower or 14:upper: two springs 14 as 14 and 24, Eq. (28a), or 13, (28b)"
+    )
     seed: int = option(0, "whole", "of the random starts (default 0)")
 
 
@@ -79,6 +89,7 @@ def design(mechanism: Mechanism, options: PlanarOptions) -> Design:
     arm = PlanarArm.of(bare)
     chosen = default_layout(arm.n) if options.layout is None else _read(options.layout, arm)
     limit = None if options.limit is None else number("limit", options.limit, positive=True)
+    longest = None if options.longest is None else number("longest", options.longest, positive=True)
     fixed = _fixed(labels(chosen), options.stiffness, options.a, options.b)
     stock = None if options.stock is None else [number("stock", k, positive=True) for k in options.stock]
     why = reason(arm, chosen)
@@ -86,12 +97,18 @@ def design(mechanism: Mechanism, options: PlanarOptions) -> Design:
         raise InfeasibleError(f"springs {name(chosen)} balance no such arm: {why}")
     if progress is not None:
         progress("solving the design equations", 0.0)
-    found = solve(arm, chosen, limit, fixed, seed)
+    elongation = None if longest is None else Elongation.of(bare, arm, longest)
+    found = solve(arm, chosen, limit, fixed, seed, elongation=elongation)
     if found is not None and stock is not None:
         found = _from_stock(found, stock, seed, progress)
     if found is None:
-        raise InfeasibleError(_none(chosen, limit, fixed, stock))
-    designed = Design.of(bare.with_springs(arm.springs(found.springs)), "planar", _free(found, stock, seed))
+        raise InfeasibleError(_none(chosen, limit, fixed, stock, longest))
+    springs = found.springs if options.exchange is None else _exchanged(found, options.exchange)
+    free = {**_free(found, springs, stock, seed), "longest": longest, "exchange": options.exchange}
+    designed = Design.of(bare.with_springs(arm.springs(springs)), "planar", free)
+    used = max(use.path[1] for use in designed.balance.use)
+    if longest is not None and used > longest * (1 + NEAR):
+        raise InfeasibleError(f"a spring of {name(chosen)} gets {used:.6g} m long, more than the {longest:g} m allowed")
     if not designed.balance.exact:
         raise EquipoiseError(
             f"the springs found for {name(chosen)} do not balance: a fault of the method, please report"
@@ -157,15 +174,34 @@ def _from_stock(free: Installed, stock: Sequence[float], seed: int, progress: Pr
     for number_, chosen in enumerate(tried):
         if progress is not None:
             progress("choosing from stock", number_ / len(tried))
-        held = Equations(of.arm, of.layout, of.limit, {**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
+        held = replace(of, fixed={**of.fixed, **{(s, STIFFNESS): k for s, k in enumerate(chosen)}})
         found = held.solve(seed, starts=4, near=free.x)
         if found is not None:
             return found
     return None
 
 
-def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> str:
+def _exchanged(found: Installed, text: str) -> tuple[Installation, ...]:
+    """The springs with two of them exchanged, Eqs. (28a, b).
+
+    Raises:
+        InputError: no two springs between the links named.  InfeasibleError: no two springs have this effect.
+    """
+    pair, _, end = text.partition(":")
+    arm = found.equations.arm
+    links = _pair(pair, arm)
+    two = [spring for spring in found.springs if (spring.i, spring.k) == links]
+    if len(two) != 2 or end not in ENDS:
+        asked = f"expected two springs of the layout and {' or '.join(ENDS)}, such as 14:lower, found '{text}'"
+        raise InputError(Fault(("exchange",), asked))
+    rest = [spring for spring in found.springs if spring not in two]
+    made = exchanged(arm, two[0], two[1], "lower" if end == "lower" else "upper")
+    return tuple(sorted((*rest, *made), key=lambda spring: (spring.i, spring.k)))
+
+
+def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object, longest: float | None) -> str:
     asked = [
+        *([f"lengths of at most {longest:g} m"] if longest is not None else []),
         *([f"attachments within {limit:g} m"] if limit is not None else []),
         *([f"{len(fixed)} given values"] if fixed else []),
         *(["stiffnesses from stock"] if stock is not None else []),
@@ -174,18 +210,21 @@ def _none(layout: Layout, limit: float | None, fixed: Fixed, stock: object) -> s
     return f"no springs {name(layout)}{given} were found that balance this arm, nor a proof that there are none"
 
 
-def _free(found: Installed, stock: Sequence[float] | None, seed: int) -> dict[str, Any]:
+def _free(
+    found: Installed, springs: Sequence[Installation], stock: Sequence[float] | None, seed: int
+) -> dict[str, Any]:
     of = found.equations
-    names = labels(of.layout)
+    layout = tuple((one.i, one.k) for one in springs)
+    names = labels(layout)
 
     def along(z: complex) -> float | list[float]:
         return z.real if of.arm.straight else [z.real, z.imag]
 
     return {
-        "layout": [name((pair,)) for pair in of.layout],
-        "stiffness": {label: one.stiffness for label, one in zip(names, found.springs, strict=True)},
-        "a": {label: along(one.a / upward(one.i)) for label, one in zip(names, found.springs, strict=True)},
-        "b": {label: along(one.b) for label, one in zip(names, found.springs, strict=True)},
+        "layout": [name((pair,)) for pair in layout],
+        "stiffness": {label: one.stiffness for label, one in zip(names, springs, strict=True)},
+        "a": {label: along(one.a / upward(one.i)) for label, one in zip(names, springs, strict=True)},
+        "b": {label: along(one.b) for label, one in zip(names, springs, strict=True)},
         "limit": None if isinf(of.limit) else of.limit,
         "stock": None if stock is None else list(stock),
         "seed": seed,

@@ -108,7 +108,8 @@ def design(mechanism: Mechanism, options: PseudobaseOptions) -> Design:
     sizes = spring_sizes({links[i].name: g * float(np.linalg.norm(whole[i].vector)) for i in sprung},  # (16)
                          {links[i].name: mounts.default_radius(links[i].name) for i in sprung},
                          options.stiffness, l_CA=options.l_CA, l_CB=options.l_CB)  # fmt: skip
-    balanced = Builder(bare, links, height, options.real).build(modules, whole, sprung, sizes)
+    builder = Builder(bare, links, height, options.real)
+    balanced = builder.build(modules, whole, sprung, sizes)
     turning, idle = mobility(len(bare.coordinates), sum(not module.planar for module in modules.values()))
     free = {
         "stiffness": {name: K for name, (K, _, _) in sizes.items()},
@@ -121,6 +122,8 @@ def design(mechanism: Mechanism, options: PseudobaseOptions) -> Design:
         "planar": flat,
         "mobility": {"active": turning, "idle": idle},
     }
+    if options.real:
+        free["folds"] = builder.folding(modules)
     return Design.of(balanced, "pseudobase", free)
 
 

@@ -4,7 +4,8 @@ A module is the spatial parallelogram O_{i-1} C_i D_i O^_{i-1} of link i, its au
 two, the pseudobase. It is written with two `parallelogram` joints: the auxiliary link has the orientation of link i,
 and the coupler that of the upright link below. Or with the joints it is built with: the auxiliary links hang on each
 other by hinges as the links do, and two ball joints hold a coupler, the second of them by closing a loop. Such a module
-folds where C_i, the joint's axis and the vertical come into one plane: keep joint ranges away from there.
+folds where C_i, the joint's axis and the vertical come into one plane: there it may leave the branch on which it is a
+parallelogram, and joint ranges should keep away; `folding` says which modules do fold.
 
 Only the line C_i D_i of a coupler on spherical joints is defined, for
 it may spin about that line: its mass centre and the spring's end lie on it.
@@ -26,6 +27,7 @@ from ...model.names import Names
 from ...model.rotation import to_rpy
 from ..arms.moments import Lump, Moment, Segment, upwards
 
+FOLDS = 1024  # poses that are looked at for modules that fold
 POSES = 64  # of which the one with the widest parallelograms is where real joints are assembled
 
 
@@ -142,14 +144,17 @@ class Builder:
 
         There C_i, the joint's axis and the vertical are in one plane: turning the auxiliary link leaves |C_i D_i|.
         """
-        tree, up = self._tree, upwards(self.mechanism)
-        q = sample(tree, POSES)
-        R = tree.poses(q).R
-        widths = []
-        for i, module in modules.items():
-            level = np.cross(self.links[i].axis, module.centre)
-            widths.append(np.abs(R[:, self._index[self.links[i].name]] @ level @ up) / np.linalg.norm(level))
-        return q[int(np.min(widths, axis=0).argmax())]
+        q = sample(self._tree, POSES)
+        return q[int(np.abs(widths(self._tree, self._centres(modules), q)).min(axis=1).argmax())]
+
+    def folding(self, modules: Mapping[int, Module]) -> list[str]:
+        """The links whose modules fold somewhere inside the joint ranges: at poses on either side of which they are."""
+        q = sample(self._tree, FOLDS)
+        sides = np.sign(widths(self._tree, self._centres(modules), q))
+        return [self.links[i].name for i, both in zip(modules, np.ptp(sides, axis=0) > 0, strict=True) if both]
+
+    def _centres(self, modules: Mapping[int, Module]) -> list[tuple[Segment, Array]]:
+        return [(self.links[i], module.centre) for i, module in modules.items()]
 
     def _foot(self, link: Segment, auxiliaries: Mapping[int, str]) -> tuple[str, Array]:
         """Where O^_{i-1} is: a body and a point in its frame, above O_{i-1}."""
@@ -186,6 +191,21 @@ class Builder:
     def _up(self, body: str) -> Array:
         """Up in the frame of an upright body."""
         return self._home[self._index[body]].T @ upwards(self.mechanism)
+
+
+def widths(tree: Tree, modules: Sequence[tuple[Segment, Array]], q: Array) -> Array:
+    """(N, modules) how wide each parallelogram is, as a share of the most: it folds where this changes sign.
+
+    Args:
+        modules: links with C_i from O_{i-1} along the link's axes [m].
+        q: (N, n) configurations of the bare arm.
+    """
+    R, up = tree.poses(q).R, upwards(tree.mechanism)
+    found = []
+    for link, centre in modules:
+        level = np.cross(link.axis, centre)
+        found.append(R[:, tree.index[link.name]] @ level @ up / np.linalg.norm(level))
+    return np.stack(found, axis=1)
 
 
 def mobility(turning: int, modules: int) -> tuple[int, int]:
