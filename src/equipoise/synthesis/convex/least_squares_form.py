@@ -209,7 +209,7 @@ def _samples(problem: Problem, loaded: Sequence[Mechanism], progress: Progress |
 
 
 def _triangle(rows: Array) -> Array:
-    """The triangular factor: the same LeastSquaresForm matrix in as few rows as there are columns."""
+    """The triangular factor: the same Gram matrix in as few rows as there are columns."""
     return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
