@@ -108,6 +108,7 @@ def test_a_row_that_fails_makes_the_command_fail_and_is_named_last(run, monkeypa
 def test_vectors_give_a_row_for_each_component():
     rows = vector("paper", "sigma", ["0.1", "0.2", "0.30"], np.array([0.1, 0.2, 0.3]), unit="m")
     assert [row.item for row in rows] == ["sigma.x", "sigma.y", "sigma.z"]
+    assert rows[2].printed is not None
     assert rows[2].printed.tolerance == pytest.approx(0.005)
     assert rows[1].relative_difference == pytest.approx(0)
 

@@ -95,7 +95,7 @@ class Branch:
                 j = names.index(one.joint)
                 self._offset[j] = one.offset
                 for name, ratio in one.terms:
-                    self._spread[j, kept.index(name)] = ratio
+                    self._spread[j, [str(one) for one in kept].index(name)] = ratio
 
     def _relations(self) -> Iterator[Coupling]:
         """Between the joints, at poses near the assembly pose."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -60,7 +61,8 @@ def two_axis_rocker(BF: float, CS: float, equation_10: str = "exact", **guide: f
             Joint("C", "revolute", "link 3", "link 4", axis=(1.0, 0.0, 0.0)),
         ),
     )
-    found = design(bare, "delta", variant="rocker", BF=BF, CS=CS, equation_10=equation_10, **guide)
+    given: dict[str, Any] = {"BF": BF, "CS": CS, "equation_10": equation_10, **guide}
+    found = design(bare, "delta", variant="rocker", **given)
     return found.mechanism, found.balance
 
 
