@@ -18,8 +18,8 @@ from peers import peer
 from robots import robot
 
 import equipoise as eq
-from equipoise.viewer import messages
 from equipoise.model.mechanism import Mechanism
+from equipoise.viewer import messages
 
 FOLDER = Path(__file__).parents[1] / "examples" / "mechanisms"
 EXAMPLES = ("ur5", "lin2010_balanced", "delta_balanced", "bevel_balanced")
