@@ -109,7 +109,7 @@ def test_friction_damping_and_capsules_round_trip(tmp_path):
         )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(reason="a hundred models, each compiled in a process of its own")
 def test_random_mechanisms_round_trip(tmp_path):
     done, seed = 0, 500
     while done < 100:
@@ -207,8 +207,8 @@ def test_equalities(tmp_path):
         ("", spring('stiffness="100" springlength="0 0.2"'), "tendon 's' is slack from 0 to 0.2 m"),
         (f'<body name="hand"><joint name="w"/>{ONE_KG}</body>',
          '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
-        ("", '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><site site="hook"/>'
-         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring that does not run straight"),
+        ("", '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><site site="end"/>'
+         '<site site="hook"/></spatial></tendon>', "tendon 'f' is a spring that does not run straight"),
     ],
 )  # fmt: skip
 def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):

@@ -46,7 +46,7 @@ def hardware(
     Example: [bold]equipoise hardware balanced.yaml --outer 40mm --length 600mm -o bill.csv --sheet springs.svg[/bold]
     """
     from ..balance import check
-    from ..hardware.realise import bill as make
+    from ..hardware import bill as make
     from ..io.files import check_writable, write_text
     from ..report.drawing import check_sheet, save_drawing
 
@@ -159,9 +159,8 @@ def _options(
     limits: list[str],
     friction: list[str],
 ) -> Options:
-    from ..hardware import Envelope, Limits, Options
+    from ..hardware import Envelope, Limits, Options, wire
     from ..hardware.realise.realisations import FRICTION
-    from ..hardware.sizing import wire
     from . import options
 
     rm = None if strength is None else quantity(strength, "stress", "--strength")
