@@ -26,6 +26,8 @@ NOTES = {
     "no limit": (joint("revolute"), "joint 'j' (line 3): its limits are missing: read as unlimited"),
     "limit without bounds": (joint("prismatic", "\n<limit effort='1'/>"), "joint 'j' (line 4): its limits are missing"),
     "0 to 0": (joint("revolute", "<limit lower='0' upper='0'/>"), "its range is a single value, 0 to 0: read as"),
+    "endless limits": (joint("revolute", "<limit lower='-1e16' upper='1e16'/>"),
+                       "its limits are beyond all bounds: read as"),
     "no mass": (M.format(f"<inertia {NONE}/>"),
                 "link 'm' (line 3): its mass is missing, and taken as 0 kg"),
     "mass without value": (

@@ -178,7 +178,7 @@ class Between:
         along, kinds = (array[first : first + count] for array in (model.wrap_objid, model.wrap_type))
         low, high = (float(x) for x in model.tendon_lengthspring[t])
         if high - low > 1e-12 * max(high, 1.0):
-            unit = "" if (kinds == int(wrap.mjWRAP_JOINT)).all() else " m"
+            unit = "" if (kinds == int(wrap.mjWRAP_JOINT)).any() else " m"
             problem = f"is slack from {low:g} to {high:g}{unit}: a spring that only pulls is not known"
             source.refuse("tendon", t, f"{problem}; springlength='{high:g} {high:g}' pushes below that length as well")
         elif (kinds == int(wrap.mjWRAP_JOINT)).all():

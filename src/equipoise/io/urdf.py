@@ -22,6 +22,7 @@ from ..model.elements import Vec3
 from ..model.errors import EquipoiseWarning, Fault, InputError, Path, nearest
 from ..model.mechanism import WORLD, Body, Coupling, Joint, JointType, Mechanism
 from ..model.rotation import from_rpy
+from ..model.validate import FARTHEST
 from . import files, freed
 from .lint import inertia_lint
 from .notes import Notes
@@ -227,8 +228,9 @@ class _Reader:
         before = len(self.faults)
         # URDF: the one that is not given is zero
         lower, upper = (self._number(limit, (*path, "limit"), key, 0.0) for key in ("lower", "upper"))
-        if lower == upper == 0.0:
-            self.notes.note(str(path[0]), f"its range is a single value, 0 to 0: {UNLIMITED[kind]}", limit.line)
+        nobody = "its range is a single value, 0 to 0" if lower == upper == 0.0 else "its limits are beyond all bounds"
+        if lower == upper == 0.0 or (lower <= -FARTHEST and upper >= FARTHEST):
+            self.notes.note(str(path[0]), f"{nobody}: {UNLIMITED[kind]}", limit.line)
             return None
         return (lower, upper) if len(self.faults) == before else None
 
