@@ -233,7 +233,7 @@ BAD_ROBOTS = {
     "ring": (TWO + joint("fixed") + joint("fixed", name="k", parent="b", child="a"), "form a ring"),
     "world as a child": ("<link name='a'/><link name='world'/>" + joint("fixed", child="world"), "cannot be a child"),
     "swapped limits": (TWO + joint("revolute", "<limit lower='1' upper='-1'/>"),
-                       "joint 'j'.limit: must be two numbers"),
+                       "joint 'j'.limit: must be two finite"),
     "bad limit": (TWO + joint("revolute", "\n<limit lower='1' upper='90deg'/>"),
                   "r.urdf:4:1: joint 'j'.limit.upper: expected a number, found '90deg'"),
     "zero axis": (TWO + joint("continuous", "<axis xyz='0 0 0'/>"), "joint 'j'.axis: must not be zero"),

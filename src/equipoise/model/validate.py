@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 MAX_SAMPLES = 1_000_000
+FARTHEST = 1e9  # [rad or m]: a limit of a model file beyond it means none
 MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
 LARGEST_COUNTS = {
     "bodies": 300,
