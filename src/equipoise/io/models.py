@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 from ..model.mechanism import Mechanism
 from .files import read_text
 from .urdf_known import CONVERTED
+from .xmltree import root_tag
 
 __all__ = ["CONVERTED", "MODEL_SUFFIXES", "read"]
 
@@ -38,6 +38,4 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
 
 def _is_mjcf(path: str | os.PathLike[str]) -> bool:
     """Whether the first element of an XML file is MJCF's: comments and declarations may come before it."""
-    text = re.sub(r"<!--.*?-->", "", read_text(path), flags=re.DOTALL)
-    first = re.search(r"<([A-Za-z_][\w.:-]*)", text)
-    return first is not None and first[1].startswith("mujoco")  # <mujocoinclude> is a part of one
+    return (root_tag(read_text(path)) or "").startswith("mujoco")  # <mujocoinclude> is a part of one

@@ -50,7 +50,8 @@ UNLIMITED = {
     "prismatic": "read as unlimited, and judged over +-1 m; type='fixed' locks it",
 }
 """How a joint without usable limits is read, by its type."""
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+# possessive, so that no text is gone through twice
+_NUMBER = re.compile(r"[-+]?(\d++\.?\d*+|\.\d++)([eE][-+]?\d++)?+", re.ASCII)
 _FIELDS = {"com": "inertial", "mass": "inertial", "inertia": "inertial", "range": "limit", "xyz": "origin",
            "damping": "dynamics", "friction": "dynamics"}  # fmt: skip
 """Where URDF keeps a field of ours that has another name there."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from ..model.errors import Fault, InputError
 
+CHUNK = 65_536  # characters
 MAX_ELEMENTS = 100_000  # the largest robot files have a few thousand
 
 
@@ -104,6 +106,18 @@ class Document:
             fault = Fault((), f"not well-formed XML: {expat.errors.messages[error.code]}")
             raise InputError(self._at(fault, error.lineno, error.offset + 1)) from None
         return open_elements[0].children[0]
+
+
+def root_tag(text: str) -> str | None:
+    """The tag of the first element, without reading further; None where what comes before it is no XML."""
+    parser, found = expat.ParserCreate(), []
+    parser.StartElementHandler = lambda tag, _: found.append(tag)
+    with suppress(expat.ExpatError):
+        for start in range(0, len(text), CHUNK):
+            parser.Parse(text[start : start + CHUNK], False)
+            if found:
+                break
+    return found[0] if found else None
 
 
 def lines(text: str, file: str) -> dict[tuple[str, str], int]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -20,6 +21,7 @@ from ..model.errors import Fault, InputError, Path
 MAX_DEPTH = 50
 MAX_LENGTH = 1_000_000  # characters; the parser takes about a second for a hundred thousand
 MAX_VALUES = 30_000  # keys and values: more than the largest mechanism needs
+DIGITS = 1000  # of a whole number; Python itself refuses to write more than some thousand
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(
     r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
@@ -72,10 +74,9 @@ def resolve(text: str) -> Any:
     if text in _WORDS:
         return _WORDS[text]
     if _INT.fullmatch(text):
-        try:
-            return int(text, 0) if text[:2] in ("0o", "0x") else int(text)
-        except ValueError:  # more digits than Python converts
-            return float(text)
+        if len(text) > DIGITS:
+            return -inf if text[0] == "-" else inf
+        return int(text, 0) if text[:2] in ("0o", "0x") else int(text)
     if _FLOAT.fullmatch(text):
         return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
     return text
