@@ -72,10 +72,10 @@ springs:
 masses: [{{name: m, body: b, mass: {load}, position: [{position}, 0, 0]}}]
 capsules: [{{name: c, body: b, p_a: [0, 0, 0], p_b: [{capsule}, 0, 0], radius: {radius}}}]
 """
-FIELDS = (
-    "gravity mass com inertia xyz rpy axis range damping friction slide ratio offset point stiffness free_length "
-    "spring_mass diameter load position capsule radius"
-).split()
+FIELDS = [
+    "gravity", "mass", "com", "inertia", "xyz", "rpy", "axis", "range", "damping", "friction", "slide", "ratio",
+    "offset", "point", "stiffness", "free_length", "spring_mass", "diameter", "load", "position", "capsule", "radius",
+]  # fmt: skip
 GOOD = dict.fromkeys(FIELDS, "1")
 
 DH = """\
@@ -95,7 +95,7 @@ URDF = """\
 <axis xyz="0 {axis} 0"/><limit lower="-1" upper="{upper}"/><dynamics damping="{damping}" friction="{friction}"/></joint>
 </robot>
 """
-ATTRIBUTES = "com mass inertia xyz rpy axis upper damping friction".split()
+ATTRIBUTES = ["com", "mass", "inertia", "xyz", "rpy", "axis", "upper", "damping", "friction"]
 
 MJCF = (
     '<mujoco>{before}<worldbody><body name="a"><joint name="j" axis="0 1 0"/><geom size=".1"/>{inside}</body>{beside}'
@@ -147,6 +147,10 @@ def no_files() -> Iterator[Case]:
     def link(to: str) -> Maker:
         return lambda path: path.symlink_to(to)
 
+    def linked(path: Path) -> None:
+        os.mkfifo(path.with_suffix(".pipe"))
+        path.symlink_to(path.with_suffix(".pipe"))
+
     makers: dict[str, Maker] = {
         "a pipe": lambda path: os.mkfifo(path),
         "a link to a pipe": lambda path: (
@@ -175,12 +179,23 @@ def no_files() -> Iterator[Case]:
 def contents() -> Iterator[Case]:
     for file in ("a.yaml", "a.urdf", "a.mjcf"):
         for what, content in {
-            "empty": b"", "spaces": b" \n" * 1000, "zeros": b"\0" * 1000, "binary": bytes(range(256)),
-            "UTF-16": "schema: 1".encode("utf-16"), "Latin-1": "schéma".encode("latin-1"), "a byte order mark": b"\xef\xbb\xbf",
-            "half a character": b"schema: 1\xe2\x82", "21 MB": b"a" * 21_000_000, "1 MB of letters": b"a" * 1_000_000,
-            "1 MB of lines": b"\n\n#" * 333_000, "brackets": b"[" * 100_000, "tags": b"<a>" * 100_000, "quotes": b'"' * 100_001,
-            "carriage returns": b"\r" * 10_000, "escapes": b"\x1b[31m" * 100,
-        }.items():  # fmt: skip
+            "empty": b"",
+            "spaces": b" \n" * 1000,
+            "zeros": b"\0" * 1000,
+            "binary": bytes(range(256)),
+            "UTF-16": "schema: 1".encode("utf-16"),
+            "Latin-1": "schéma".encode("latin-1"),
+            "a byte order mark": b"\xef\xbb\xbf",
+            "half a character": b"schema: 1\xe2\x82",
+            "21 MB": b"a" * 21_000_000,
+            "1 MB of letters": b"a" * 1_000_000,
+            "1 MB of lines": b"\n\n#" * 333_000,
+            "brackets": b"[" * 100_000,
+            "tags": b"<a>" * 100_000,
+            "quotes": b'"' * 100_001,
+            "carriage returns": b"\r" * 10_000,
+            "escapes": b"\x1b[31m" * 100,
+        }.items():
             yield check(f"{file}: {what}", file, content)
 
 
@@ -200,13 +215,19 @@ def yaml_structure() -> Iterator[Case]:
         "ten thousand faulty bodies": head + "bodies:\n" + "  - {nam: b, mas: x}\n" * 5000,
         "ten thousand bodies": head + "bodies:\n" + "".join(map(body.format, range(10_000))),
         "a thousand bodies": head + "bodies:\n" + "".join(map(body.format, range(1000))),
-        "a thousand springs": head + "springs:\n" + "".join(
-            f"  - {{name: s{i}, body_a: world, p_a: [0,0,0], body_b: b, p_b: [0,0,0], stiffness: 1}}\n" for i in range(1000)
+        "a thousand springs": head
+        + "springs:\n"
+        + "".join(
+            f"  - {{name: s{i}, body_a: world, p_a: [0,0,0], body_b: b, p_b: [0,0,0], stiffness: 1}}\n"
+            for i in range(1000)
         ),
-        "hundreds of unknown names": head + "bodies:\n" + "".join(map(body.format, range(300))) + "joints:\n" + "".join(
-            f"  - {{name: j{i}, type: fixed, parent: bb{i}, child: bc{i}}}\n" for i in range(300)
-        ),
-        "a ring of joints": head + "bodies: [{name: a}, {name: b}]\njoints:\n  - {name: j, type: fixed, parent: a, child: b}\n"
+        "hundreds of unknown names": head
+        + "bodies:\n"
+        + "".join(map(body.format, range(300)))
+        + "joints:\n"
+        + "".join(f"  - {{name: j{i}, type: fixed, parent: bb{i}, child: bc{i}}}\n" for i in range(300)),
+        "a ring of joints": head
+        + "bodies: [{name: a}, {name: b}]\njoints:\n  - {name: j, type: fixed, parent: a, child: b}\n"
         "  - {name: k, type: fixed, parent: b, child: a}\n",
         "dates for numbers": head + "gravity: [2020-01-01, 0, 0]\n",
         "whole numbers of a thousand digits": head + f"gravity: [{'9' * 1000}, 0, 0]\n",
@@ -221,7 +242,7 @@ def yaml_structure() -> Iterator[Case]:
         "a list instead": "- 1\n",
         "a text instead": "hello\n",
         "a wrong schema": "schema: 99\nname: a\n",
-    }.items():  # fmt: skip
+    }.items():
         yield check(f"YAML: {what}", "a.yaml", text)
 
 
@@ -271,13 +292,14 @@ def xml() -> Iterator[Case]:
         "many attributes": "<robot name='r' " + " ".join(f"a{i}='1'" for i in range(50_000)) + "/>",
         "the same attribute": "<robot name='r' name='s'/>",
         "a name of a megabyte": f"<robot name='r'><link name='{'a' * 1_000_000}'/><joint name='j'/></robot>",
-        "a thousand links": "<robot name='r'><link name='l0'/>" + "".join(
-            link.format(i + 1) + joint.format(i, "fixed", i + 1) for i in range(1000)
-        ) + "</robot>",
-        "ten thousand turning links": "<robot name='r'><link name='l0'/>" + "".join(
-            link.format(i + 1) + joint.format(i, "continuous", i + 1) for i in range(10_000)
-        ) + "</robot>",
-        "a ring": "<robot name='r'><link name='l0'/><link name='l1'/>" + joint.format(0, "fixed", 1)
+        "a thousand links": "<robot name='r'><link name='l0'/>"
+        + "".join(link.format(i + 1) + joint.format(i, "fixed", i + 1) for i in range(1000))
+        + "</robot>",
+        "ten thousand turning links": "<robot name='r'><link name='l0'/>"
+        + "".join(link.format(i + 1) + joint.format(i, "continuous", i + 1) for i in range(10_000))
+        + "</robot>",
+        "a ring": "<robot name='r'><link name='l0'/><link name='l1'/>"
+        + joint.format(0, "fixed", 1)
         + "<joint name='k' type='fixed'><parent link='l1'/><child link='l0'/></joint></robot>",
         "a comment without end": "<!--" + "-" * 100_000,
         "comments that only begin": "<!--" * 200_000,
@@ -285,39 +307,47 @@ def xml() -> Iterator[Case]:
         "instructions": "<?x ?>" * 20_000 + "<robot",
         "an unknown encoding": '<?xml version="1.0" encoding="klingon"?><robot',
         "no robot": "<sdf version='1.7'/>",
-    }.items():  # fmt: skip
+    }.items():
         yield check(f"URDF: {what}", "a.urdf", text)
         yield check(f"XML: {what}", "a.xml", text)
 
 
 def models() -> Iterator[Case]:
     many = '<replicate count="1000" offset="1 0 0">' * 3 + '<body><joint/><geom size=".1"/></body>' + "</replicate>" * 3
-    fixed = '<tendon><fixed name="t"><joint joint="j" coef="{}"/></fixed></tendon><equality><tendon tendon1="t"/></equality>'
+    fixed = '<tendon><fixed name="t"><joint joint="j" coef="{}"/></fixed></tendon>'
+    fixed += '<equality><tendon tendon1="t"/></equality>'
     for what, text in {
         "copies of copies": mjcf(beside=many),
         "a thousand bodies": mjcf(beside='<body><joint/><geom size=".1"/></body>' * 1000),
         "a height field of gigabytes": mjcf(
-            '<asset><hfield name="h" nrow="20000" ncol="20000" size="1 1 1 1"/></asset>', beside='<geom type="hfield" hfield="h"/>'
+            '<asset><hfield name="h" nrow="20000" ncol="20000" size="1 1 1 1"/></asset>',
+            beside='<geom type="hfield" hfield="h"/>',
         ),
         "a texture of gigabytes": mjcf(
             '<asset><texture name="t" type="2d" builtin="flat" width="60000" height="60000"/></asset>'
         ),
         "memory of gigabytes": mjcf('<size memory="900G"/>'),
         "a grid": mjcf(beside='<flexcomp name="f" type="grid" count="80 80 80" spacing="1 1 1" dim="3"/>'),
-        "a tendon of coefficient zero": mjcf(after=fixed.format(0)),
         "a tendon of NaN": mjcf(after=fixed.format("nan")),
         "an unknown element": mjcf("<nothing/>"),
         "a model in a model": mjcf("<mujoco/>"),
         "an include of itself": mjcf('<include file="a.xml"/>'),
         "an include of nothing": mjcf('<include file="nothing.xml"/>'),
         "an include of a device": mjcf('<include file="/dev/zero"/>'),
-        "a mesh that is a device": mjcf('<asset><mesh name="m" file="/dev/zero"/></asset>', beside='<geom type="mesh" mesh="m"/>'),
-        "a mesh of no format": mjcf('<asset><mesh name="m" file="a.xml"/></asset>', beside='<geom type="mesh" mesh="m"/>'),
+        "a mesh that is a device": mjcf(
+            '<asset><mesh name="m" file="/dev/zero"/></asset>', beside='<geom type="mesh" mesh="m"/>'
+        ),
+        "a texture that is a device": mjcf(
+            '<compiler texturedir="/dev"/><asset><texture name="t" type="2d" file="zero"/></asset>'
+        ),
+        "a mesh of no format": mjcf(
+            '<asset><mesh name="m" file="a.xml"/></asset>', beside='<geom type="mesh" mesh="m"/>'
+        ),
         "NaN": mjcf(inside='<body pos="nan 0 0"><joint/><geom size=".1"/></body>'),
         "1e308": mjcf(inside='<body pos="1e308 0 0"><joint/><geom size=".1"/></body>'),
         "an unknown plugin": mjcf('<extension><plugin plugin="nothing"/></extension>'),
         "half of a file": mjcf()[:80],
-    }.items():  # fmt: skip
+    }.items():
         yield check(f"MJCF: {what}", "a.xml", text)
     for what, data in {"Latin-1": "é".encode("latin-1"), "zeros": b"\0" * 100}.items():
         include = {"a.xml": mjcf('<include file="b.xml"/>'), "b.xml": b"<mujocoinclude a='" + data + b"'/>"}
@@ -336,26 +366,40 @@ def parquet(columns: Callable[[Any], dict[str, Any]]) -> bytes:
 def tables() -> Iterator[Case]:
     arm = {"a.yaml": YAML.format(**GOOD)}
     for what, text in {
-        "commas": ",,,\n" * 10, "carriage returns": "\r" * 100, "one huge cell": '"' + "a" * 200_000 + '",1\n1,2\n',
-        "a quote without end": 'time,"j\n' + "1,2\n" * 1000, "zeros": "time,j\n1,\0\n2,3\n", "a heading only": "time,j\n",
-        "no time": "j\n1\n2\n3\n", "no number": "time,j\n0,x\n1,2\n2,3\n", "NaN": "time,j\n0,nan\n1,0\n2,0\n",
-        "times of 1e308": "time,j\n-1e308,0\n0,0\n1e308,0\n", "times 1e300 apart": "time,j\n0,0\n1e300,0\n2e300,0\n",
-        "denormal times": "time,j\n0,0\n5e-324,0\n1e-323,0\n", "values of 1e308": "time,j\n0,0\n1,1e308\n2,-1e308\n",
-        "the same time": "time,j\n0,0\n0,0\n1,0\n", "too many cells": "time,j\n0,0,0\n1,1,1\n2,2,2\n",
-        "a unit of letters": "time [" + "a" * 40 + "!],j\n0,0\n1,0\n2,0\n", "a unit of mass": "time [kg],j\n0,0\n1,0\n2,0\n",
-        "a million rows": "time,j\n" + "".join(f"{i},0\n" for i in range(1_000_000)), "the same column": "time,j,j\n0,0,0\n1,0,0\n",
-        "a thousand columns": ",".join(f"c{i}" for i in range(1000)) + "\n", "a million commas": "," * 1_000_000 + "\n1\n",
-    }.items():  # fmt: skip
+        "commas": ",,,\n" * 10,
+        "carriage returns": "\r" * 100,
+        "one huge cell": '"' + "a" * 200_000 + '",1\n1,2\n',
+        "a quote without end": 'time,"j\n' + "1,2\n" * 1000,
+        "zeros": "time,j\n1,\0\n2,3\n",
+        "a heading only": "time,j\n",
+        "no time": "j\n1\n2\n3\n",
+        "no number": "time,j\n0,x\n1,2\n2,3\n",
+        "NaN": "time,j\n0,nan\n1,0\n2,0\n",
+        "times of 1e308": "time,j\n-1e308,0\n0,0\n1e308,0\n",
+        "times 1e300 apart": "time,j\n0,0\n1e300,0\n2e300,0\n",
+        "denormal times": "time,j\n0,0\n5e-324,0\n1e-323,0\n",
+        "values of 1e308": "time,j\n0,0\n1,1e308\n2,-1e308\n",
+        "the same time": "time,j\n0,0\n0,0\n1,0\n",
+        "too many cells": "time,j\n0,0,0\n1,1,1\n2,2,2\n",
+        "a unit of letters": "time [" + "a" * 40 + "!],j\n0,0\n1,0\n2,0\n",
+        "a unit of mass": "time [kg],j\n0,0\n1,0\n2,0\n",
+        "a million rows": "time,j\n" + "".join(f"{i},0\n" for i in range(1_000_000)),
+        "the same column": "time,j,j\n0,0,0\n1,0,0\n",
+        "a thousand columns": ",".join(f"c{i}" for i in range(1000)) + "\n",
+        "a million commas": "," * 1_000_000 + "\n1\n",
+    }.items():
         yield Case(f"motion: {what}", {**arm, "m.csv": text}, ("simulate", "a.yaml", "--motion", "m.csv"))
         yield Case(f"list: {what}", {**arm, "l.csv": text}, ("stock", "a.yaml", "l.csv"))
     head = "part,kind,rate{0},max_force,free_length,outer_diameter,wire_diameter,mass\n"
     row = "p{0},extension,{1},9,1,.1,.01,1\n"
     for what, text in {
-        "a rate of 1e308": head.format("") + row.format(0, "1e308"), "a rate of NaN": head.format("") + row.format(0, "nan"),
-        "a unit of letters": head.format(" [" + "a" * 40 + "!]") + row.format(0, 1),
-        "parts twice": head.format("") + row.format(0, 1) * 1000, "faulty rows": head.format("") + row.format(0, "x") * 50_000,
+        "a rate of 1e308": head.format("") + row.format(0, "1e308"),
+        "a rate of NaN": head.format("") + row.format(0, "nan"),
+        "a unit of rates, of letters": head.format(" [" + "a" * 40 + "!]") + row.format(0, 1),
+        "parts twice": head.format("") + row.format(0, 1) * 1000,
+        "faulty rows": head.format("") + row.format(0, "x") * 50_000,
         "too many springs": head.format("") + "".join(row.format(i, 1) for i in range(100_001)),
-    }.items():  # fmt: skip
+    }.items():
         yield Case(f"list: {what}", {**arm, "l.csv": text}, ("stock", "a.yaml", "l.csv"))
     contents: dict[str, Callable[[Any], dict[str, Any]]] = {
         "30 million rows": lambda pa: {"part": pa.nulls(30_000_000, pa.int8())},

@@ -17,6 +17,7 @@ except ImportError:  # Windows: nobody can tell whose a temporary file is, and n
     fcntl = None
 
 MAX_BYTES = 20_000_000
+NO_FILE = "is a pipe or a device, not a file: save what it gives to a file first"
 OURS = ".equipoise.tmp"  # how the names of our temporary files end
 
 
@@ -30,7 +31,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     try:
         with open(name, "rb", opener=_unblocked) as stream:
             if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-                raise _fault(name, "is a pipe or a device, not a file: save what it gives to a file first")
+                raise _fault(name, NO_FILE)
             data = stream.read(MAX_BYTES + 1)
     except InputError:
         raise
@@ -39,6 +40,17 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     if len(data) > MAX_BYTES:
         raise _fault(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
     return data
+
+
+def check_regular(path: str | os.PathLike[str]) -> None:
+    """Whether another program that reads there would not wait for ever; nothing at all is fine.
+
+    Raises:
+        InputError: it is a pipe or a device.
+    """
+    name = os.fspath(path)
+    if _special(name) and not os.path.isdir(name):
+        raise _fault(name, NO_FILE)
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

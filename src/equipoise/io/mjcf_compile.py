@@ -16,7 +16,7 @@ from ..model.errors import Fault, InputError
 from . import files, mjcf_child
 from .xmltree import Document
 
-SECONDS, WITH_ASSETS = 1.0, 30.0  # of processor time, without and with files of meshes, textures and the like
+SECONDS, WITH_ASSETS = 0.7, 30.0  # of processor time, without and with files of meshes, textures and the like
 PATIENCE = 60.0  # [s] for a child that neither works nor ends
 SMALLER = "leave out what is drawn and copied"
 
@@ -39,20 +39,23 @@ def compiled(name: str) -> Any:
 
 
 def _assets(name: str) -> bool:
-    """Whether the file, or one that it includes, names files of another kind; all that are included can be read."""
-    folder, waiting, seen, assets = Path(name).parent, [name], {name}, False
+    """Whether the file, or one that it includes, names files of another kind; all that are named are regular files."""
+    folder, waiting, seen = Path(name).parent, [name], {name}
+    folders, assets = {folder}, set()
     while waiting:
         file = waiting.pop()
         for element in Document(files.read_text(file), file).root.walk():
-            other = element.attributes.get("file")
-            if other is None:
-                assets |= any(key.startswith("file") for key in element.attributes)  # fileup, filedown, ...
+            named = {key: value for key, value in element.attributes.items() if key.startswith("file")}  # also fileup
+            if element.tag == "compiler":
+                folders |= {folder / value for key, value in element.attributes.items() if key.endswith("dir")}
             elif element.tag != "include":
-                assets = True
-            elif (path := os.fspath(folder / other)) not in seen:
+                assets |= set(named.values())
+            elif (path := os.fspath(folder / named.get("file", ""))) not in seen:
                 seen.add(path)
                 waiting.append(path)
-    return assets
+    for path in (place / asset for place in folders for asset in assets):
+        files.check_regular(path)
+    return bool(assets)
 
 
 def _run(name: str, seconds: float) -> bytes:
