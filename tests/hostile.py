@@ -50,7 +50,6 @@ TEXTS = {
     "an expression": "1 __import__('os').system('true')",
     "infinity": "1e999",
     "no number": "nan",
-    "huge": "1e308",
 }
 """What may stand for a quantity, each of them wrong everywhere."""
 
@@ -116,6 +115,18 @@ def quantities() -> Iterator[Case]:
             yield check(f"DH {key}: {what}", "a.yaml", DH.format(**good | {key: f'"{text}"'}))
         for key in ATTRIBUTES:
             yield check(f"URDF {key}: {what}", "a.urdf", URDF.format(**dict.fromkeys(ATTRIBUTES, "1") | {key: text}))
+
+
+def sizes() -> Iterator[Case]:
+    """Numbers whose squares and products leave what a computer can hold: refused, or computed."""
+    for size in ("1e308", "-1e308", "1e200", "1e-308", "5e-324", "1e160", "-1e-200"):
+        for key in FIELDS:
+            yield Case(
+                f"YAML {key} of {size}", {"a.yaml": YAML.format(**GOOD | {key: size})}, ("check", "a.yaml", "--json")
+            )
+        for key in ATTRIBUTES:
+            text = URDF.format(**dict.fromkeys(ATTRIBUTES, "1") | {key: size})
+            yield Case(f"URDF {key} of {size}", {"a.urdf": text}, ("check", "a.urdf", "--json"))
 
 
 def options() -> Iterator[Case]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import signal
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hostile import KINDS, Case, contents, models, quantities, tables
+from hostile import KINDS, Case, contents, models, quantities, sizes, tables
 from peers import peer
 
 SECONDS, MEGABYTES = 2.0, 500.0
@@ -69,6 +70,23 @@ def test_hostile(run, tmp_path, kind):
 @pytest.mark.parametrize("kind", [*SLOW, *FEW], ids=lambda kind: kind.__name__)
 def test_hostile_and_long(run, tmp_path, kind):
     refused(run, tmp_path, kind())
+
+
+@pytest.mark.parametrize("every", [pytest.param(1, marks=pytest.mark.slow(reason="two hundred verdicts")), 9])
+def test_numbers_of_any_size_are_refused_or_computed(run, tmp_path, every):
+    wrong = {}
+    for number, case in enumerate(islice(sizes(), 0, None, every)):
+        place = tmp_path / str(number)
+        place.mkdir()
+        code, out, err = run(*case.make(place))
+        answer = code == 2 and not out and err.startswith(("error: ", "warning: "))
+        if code in (0, 1):
+            odd: list[str] = []  # NaN and the like
+            json.loads(out, parse_constant=odd.append)
+            answer = not odd
+        if not answer or "internal error" in err:
+            wrong[case.name] = f"{code} {err}"
+    assert wrong == {}
 
 
 def refused(run: Any, folder: Path, cases: Iterator[Case]) -> None:
