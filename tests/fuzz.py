@@ -98,7 +98,9 @@ def main(name: str, seconds: float, seed: int = 0) -> int:
             import atheris
         except ImportError:
             return at_random(reader(name, folder), seeds, seconds, seed)
-        with atheris.instrument_imports(include=["equipoise.io", "equipoise.model", "equipoise.cli.motions"]):
+        with atheris.instrument_imports(
+            include=["equipoise.io", "equipoise.model", "equipoise.cli.motions", "equipoise.hardware"]
+        ):
             read = reader(name, folder)
         corpus = folder / "corpus"
         corpus.mkdir()

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from equipoise.model.elements import Spring
 from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from equipoise.model.validate import TURNS
 
 ODD = [
     "yes",
@@ -36,7 +37,7 @@ masses = st.floats(min_value=0, allow_infinity=False)
 CONTROL = ("Cc", "Cs", "Zl", "Zp")  # not in names
 texts = st.sampled_from(ODD) | st.text(max_size=8)
 labels = st.sampled_from([name for name in ODD if not any(category(letter) in CONTROL for letter in name)])
-labels |= st.text(st.characters(exclude_categories=CONTROL), max_size=8)
+labels |= st.text(st.characters(exclude_categories=CONTROL, exclude_characters=TURNS), max_size=8)
 vectors = st.tuples(reals, reals, reals)
 axes = vectors.filter(any)
 scalars = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | texts

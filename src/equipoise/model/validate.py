@@ -16,6 +16,7 @@ from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, n
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
+TURNS = "\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"  # of the direction of writing
 MAX_SAMPLES = 1_000_000
 FARTHEST = 1e9  # [rad or m]: a limit of a model file beyond it means none
 MAX_NUMBERS = 30_000_000  # that are held at a time: about a quarter of a gigabyte
@@ -106,8 +107,8 @@ def _names(m: Mechanism) -> Iterator[Fault]:
 
 
 def printable(name: str) -> bool:
-    """Whether a name has no control characters or line breaks: they would reach terminals and break XML."""
-    return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
+    """Whether a name has nothing that would reach terminals and pages: no control characters, line breaks or turns."""
+    return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") or letter in TURNS for letter in name)
 
 
 def _references(m: Mechanism) -> Iterator[Fault]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import html
 import json
-from html import escape
 from importlib.resources import files
 
+from ...model.errors import visible
 from .content import Block, Cell, Code, Items, Number, Paragraph, Picture, Report, Table
 
 
@@ -65,3 +66,8 @@ def _text(cell: Cell) -> str:
     if isinstance(cell, Number):
         return f'<data value="{float(cell.value)!r}">{escape(cell.text)}</data>'
     return escape(cell)
+
+
+def escape(text: str) -> str:
+    """Text of a page, with what a terminal or a reader of the file would obey written out."""
+    return html.escape(visible(text, "\t\n"))
