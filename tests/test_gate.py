@@ -227,7 +227,9 @@ def test_every_such_message_is_refused_on_its_own(viewer):
         name for name, message in messages(viewer).items() if heard.objection(msgspec.msgpack.encode(message)) is None
     ]
     assert passed == []
-    assert heard.objection(msgspec.msgpack.encode(CAMERA)) is None
+    handle = {"type": "TransformControlsUpdateMessage", "name": "/handle0", "wxyz": [1, 0, 0, 0], "position": [0, 0, 1]}
+    for good in (CAMERA, handle | {"owner": ""}, {"type": "TransformControlsDragEndMessage", "name": "a", "owner": ""}):
+        assert heard.objection(msgspec.msgpack.encode(good)) is None
 
 
 def test_a_message_that_is_too_long_ends_the_connection(viewer, address):

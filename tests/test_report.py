@@ -349,3 +349,19 @@ def test_it_says_what_to_install(tmp_path, monkeypatch):
     made = make(eq.check(pendulum()), extras=())
     with pytest.raises(InputError, match=r"not_installed_anywhere: pip install 'equipoise\[report\]'"):
         save_report(made, tmp_path / "report.html")
+
+
+def test_a_page_writes_out_what_would_be_obeyed(run, tmp_path):
+    """Of values that the file brings, and of its own name."""
+    file = tmp_path / "a\x1b[31m.yaml"
+    made = '{method: "\\x1b[31mred <b>", other: "a\\u202eb", program: "bell \\x07 and \\x9b"}'
+    arm = (
+        'bodies: [{name: "a<script>", mass: 1}]\njoints: [{name: j, type: fixed, parent: world, child: "a<script>"}]\n'
+    )
+    file.write_text(f"schema: 1\nname: odd\n{arm}provenance: {made}\n")
+    code, _, err = run("report", file, "--with", "none", "-o", tmp_path / "o.html")
+    text = (tmp_path / "o.html").read_text(encoding="utf-8")
+    assert code == 0, err
+    assert [c for c in text if not c.isprintable() and c not in "\n\t"] == []
+    for written in ("\\x1b[31mred &lt;b&gt;", "a\\u202eb", "bell \\x07 and \\x9b", "a&lt;script&gt;"):
+        assert written in text
