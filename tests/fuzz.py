@@ -13,7 +13,9 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"
@@ -95,7 +97,7 @@ def main(name: str, seconds: float, seed: int = 0) -> int:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         try:
-            import atheris
+            atheris: Any = import_module("atheris")
         except ImportError:
             return at_random(reader(name, folder), seeds, seconds, seed)
         with atheris.instrument_imports(

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import IO
 
 import pytest
 
@@ -194,10 +195,9 @@ def test_runs_at_the_same_time_write_whole_files(tmp_path):
     assert whole(tmp_path)
 
 
-def piped(arguments: Sequence[str], **streams: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "equipoise", *arguments], stderr=subprocess.PIPE, text=True, timeout=300, **streams
-    )  # type: ignore[call-overload]
+def piped(arguments: Sequence[str], stdout: IO[str]) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "equipoise", *arguments]
+    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, text=True, timeout=300)
 
 
 def test_a_reader_that_has_gone(tmp_path):
