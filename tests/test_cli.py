@@ -354,7 +354,7 @@ def test_design_delta_optimum_prints_how_much_better_it_is(run):
         ("heights=0.8,0.5", "variant 'full' has no such option|must be two lengths|the smaller first"),
         ("samples=many", "expected a whole number"),
         ("share_7=a", "expected a share"),
-        ("printed=perhaps", "unknown value"),
+        ("equation_10=perhaps", "unknown value"),
         ("BG=1", "no parameter 'BG'"),
         ("AV.leg=1", "is one value for the whole mechanism"),
     ],

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from in_mujoco import set_pose
 from scipy.spatial.transform import Rotation
+from slow_reference import SlowPoses, slow_poses
 
 from equipoise.io import mjcf, urdf
 from equipoise.model.elements import Spring
@@ -24,8 +25,6 @@ ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
 NAMES = ("ur5", "ur10", "panda", "xarm7", "human")
 TENSOR = (0.02, 0.03, 0.04, 0.001, -0.002, 0.003)
 
-Poses = dict[str, tuple[np.ndarray, np.ndarray]]
-
 
 def robot(name: str) -> Mechanism:
     with warnings.catch_warnings():
@@ -33,48 +32,12 @@ def robot(name: str) -> Mechanism:
         return urdf.read(ROBOTS / f"{name}.urdf")
 
 
-def joint_values(m: Mechanism, q: dict[str, float]) -> dict[str, float]:
-    """The value of every single joint from the coordinates, by the definition of a coupling."""
-    values = dict(q)
-    couplings = {c.joint: c for c in m.couplings}
-
-    def value(name: str) -> float:
-        if name in values:
-            return values[name]
-        return couplings[name].offset + sum(ratio * value(other) for other, ratio in couplings[name].terms)
-
-    return {j.name: value(j.name) for j in m.joints if j.type in ("revolute", "prismatic")} | q
+def place(m: Mechanism, q: dict[str, float]) -> SlowPoses:
+    """R_WB and p_WB of every body."""
+    return slow_poses(m, np.array([q[name] for name in m.coordinates]))
 
 
-def place(m: Mechanism, q: dict[str, float]) -> Poses:
-    """R_WB and p_WB of every body, by the definition of the joints."""
-    values = joint_values(m, q)
-    holder = {j.child: j for j in m.joints}
-    poses: Poses = {"world": (np.eye(3), np.zeros(3))}
-
-    def pose(body: str) -> tuple[np.ndarray, np.ndarray]:
-        if body not in poses:
-            j = holder[body]
-            R_P, p_P = pose(j.parent)
-            R_PC, p = Rotation.from_euler("xyz", j.rpy).as_matrix(), np.array(j.xyz)
-            axis = np.array(j.axis) / np.linalg.norm(j.axis)
-            R = R_P @ R_PC
-            if j.type == "revolute":
-                R = R @ Rotation.from_rotvec(axis * values[j.name]).as_matrix()
-            elif j.type == "prismatic":
-                p = p + R_PC @ axis * values[j.name]
-            elif j.type == "spherical":
-                for letter in "xyz":
-                    R = R @ Rotation.from_euler(letter, q[f"{j.name}.{letter}"]).as_matrix()
-            elif j.type == "parallelogram":
-                R = pose(j.follows or "")[0] @ R_PC
-            poses[body] = (R, p_P + R_P @ p)
-        return poses[body]
-
-    return {body: pose(body) for body in m.body_names}
-
-
-def energy(m: Mechanism, poses: Poses) -> float:
+def energy(m: Mechanism, poses: SlowPoses) -> float:
     """Gravity's and the springs' potential [J]."""
 
     def at(body: str, point: tuple[float, float, float]) -> np.ndarray:

@@ -48,7 +48,7 @@ GROSS = (  # the first six that went unnoticed
              "1.4 * ((leg.load + guide.mass + link_2p / 2) * leg.B + leg.moment_2)"),
     Mutation("simionescu2015", "best_springs", "_least_squares(on_axis[:, 1:3])",
              "1.3 * _least_squares(on_axis[:, 1:3])"),
-    Mutation("cho2012", "_disk_spring", "_vec3(B)", "_vec3(1.3 * B)"),
+    Mutation("cho2012", "_disk_spring", "vec3(B)", "vec3(1.3 * B)"),
 )  # fmt: skip
 LIN = (
     ("Builder.build", "a * up", "1.2 * a * up"),

@@ -16,7 +16,7 @@ from ..energy.evaluate import Potential
 from ..energy.reference import State
 from ..kinematics import Tree, sample
 from ..kinematics.sampling import inside
-from ..model.arrays import Array
+from ..model.arrays import Array, vec3
 from ..model.elements import Element, Spring, Vec3
 from ..model.mechanism import Mechanism, PointMass
 from ..model.progress import Progress
@@ -231,8 +231,7 @@ def _tip(mechanism: Mechanism, tree: Tree) -> tuple[str, Vec3]:
     body = max((b for b in depth if b not in parents), key=lambda b: (depth[b], mass.get(b, 0.0)), default=0)
     bars = {bar.body: bar for bar in Skeleton.of(mechanism).bars}
     place = bars[body].b.p if body in bars and bars[body].b.body == body else np.zeros(3)
-    x, y, z = (float(v) for v in place)
-    return tree.names[body], (x, y, z)
+    return tree.names[body], vec3(place)
 
 
 def _regions(mechanism: Mechanism, springs: list[Spring]) -> dict[str, Region]:

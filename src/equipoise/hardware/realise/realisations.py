@@ -24,7 +24,7 @@ import numpy as np
 
 from ...balance import Balance
 from ...kinematics import Tree, sample
-from ...model.arrays import Array, frozen
+from ...model.arrays import Array, frozen, vec3
 from ...model.elements import Spring, lines
 from ...model.mechanism import Mechanism
 from ...model.units import AmountField, share
@@ -199,8 +199,7 @@ def best_pulley(mechanism: Mechanism, i: int, d: Array, radius: float) -> Pulley
     mean = d.mean(axis=0)
     if np.linalg.norm(mean) < 1e-9 * np.linalg.norm(d, axis=1).max():
         mean = d[0]
-    x, y, z = (float(value) for value in mean / np.linalg.norm(mean))
-    law = Pulley(radius, (x, y, z), -spring.free_length)
+    law = Pulley(radius, vec3(mean / np.linalg.norm(mean)), -spring.free_length)
     if not radius:
         return law
     # the torque is linear in the preload: least squares

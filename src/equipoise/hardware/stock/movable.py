@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...kinematics import Poses, Tree, sample
-from ...model.arrays import Array, frozen
+from ...model.arrays import Array, frozen, vec3
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, UnsupportedError
 from ...model.mechanism import Mechanism
@@ -37,8 +37,7 @@ class Ray:
 
     def at(self, share: float) -> tuple[float, float, float]:
         """The point at `share` of the present distance."""
-        x, y, z = (float(value) for value in self.origin + share * self.length * self.direction)
-        return x, y, z
+        return vec3(self.origin + share * self.length * self.direction)
 
 
 @dataclass(frozen=True)

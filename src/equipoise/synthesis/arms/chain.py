@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...kinematics import Tree
-from ...model.arrays import Array, frozen
+from ...model.arrays import Array, frozen, vec3
 from ...model.elements import Vec3
 from ...model.errors import UnsupportedError
 from ...model.mechanism import Mechanism
@@ -121,8 +121,7 @@ class Chain:
         """The place of a point (3,), given in the world at q = 0, in the frame of a body [m]."""
         tree = Tree.of(self.mechanism)
         zero, i = tree.poses(np.zeros((1, tree.n))), tree.index[body]
-        x, y, z = (float(v) for v in zero.R[0, i].T @ (point - zero.p[0, i]))
-        return x, y, z
+        return vec3(zero.R[0, i].T @ (point - zero.p[0, i]))
 
 
 def reasons(mechanism: Mechanism) -> list[str]:

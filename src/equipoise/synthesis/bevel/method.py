@@ -20,8 +20,8 @@ import numpy as np
 from ...balance import payload_residual
 from ...kinematics import Tree
 from ...kinematics.sampling import bounds
-from ...model.arrays import Array
-from ...model.elements import Spring, Vec3
+from ...model.arrays import Array, vec3
+from ...model.elements import Spring
 from ...model.errors import Fault, InfeasibleError, InputError
 from ...model.mechanism import Body, Coupling, Joint, Mechanism
 from ...model.names import Names
@@ -199,7 +199,7 @@ def _with_disks(
         disk, joint = taken.new(f"{side} disk"), held.new(f"{side} disk")
         bodies.append(Body(disk, masses[side]))
         place = s.centre + sign * width * s.pitch.axis
-        joints.append(Joint(joint, "revolute", s.pitch.name, disk, _vec3(place), axis=_vec3(s.pitch.axis)))
+        joints.append(Joint(joint, "revolute", s.pitch.name, disk, vec3(place), axis=vec3(s.pitch.axis)))
         couplings.append(Coupling(joint, tuple(zip(s.coordinates, row, strict=True))))
         disks.append(disk)
     return replace(m, bodies=tuple(bodies), joints=tuple(joints), couplings=tuple(couplings)), disks
@@ -238,7 +238,7 @@ def _disk_spring(
     u = s.pitch_moment / np.linalg.norm(s.pitch_moment)
     A = h * (cos(pi + phase) * u + sin(pi + phase) * np.cross(s.pitch.axis, u))
     B = s.centre + (1 if side == SIDES[0] else -1) * width * s.pitch.axis + b * u
-    return Spring(f"{side} spring", disk, _vec3(A), s.pitch.name, _vec3(B), k)
+    return Spring(f"{side} spring", disk, vec3(A), s.pitch.name, vec3(B), k)
 
 
 def _roll_spring(s: Shoulder, size: tuple[float, float, float]) -> Spring:
@@ -247,7 +247,7 @@ def _roll_spring(s: Shoulder, size: tuple[float, float, float]) -> Spring:
     assert s.roll.joint is not None
     A = np.array(s.roll.joint.xyz) + h * s.up
     B = s.roll.origin + b * s.roll_moment / np.linalg.norm(s.roll_moment)
-    return Spring("roll spring", s.roll.joint.parent, _vec3(A), s.roll.name, _vec3(B), k)
+    return Spring("roll spring", s.roll.joint.parent, vec3(A), s.roll.name, vec3(B), k)
 
 
 def _payload_rule(
@@ -265,11 +265,6 @@ def _payload_rule(
             "turn [rad]": atan2(float(s.pitch.axis @ np.cross(u, moment)), float(u @ moment)),
         }
     return rule
-
-
-def _vec3(v: Array) -> Vec3:
-    x, y, z = v.tolist()
-    return x, y, z
 
 
 METHOD = Method(

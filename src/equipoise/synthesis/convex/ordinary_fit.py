@@ -13,7 +13,7 @@ import numpy as np
 
 from ...energy.evaluate import Potential
 from ...kinematics import Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, vec3
 from ...model.elements import lines
 from ...model.mechanism import Mechanism
 from ..problem import Problem
@@ -114,7 +114,7 @@ class Fit:
     def mechanism_of(self, x: Array) -> Mechanism:
         k, p, free = self._values(x)
         new = {
-            s.name: replace(s, stiffness=float(k[i]), p_a=_vec(p[i, 0]), p_b=_vec(p[i, 1]), free_length=float(free[i]))
+            s.name: replace(s, stiffness=float(k[i]), p_a=vec3(p[i, 0]), p_b=vec3(p[i, 1]), free_length=float(free[i]))
             for i, s in enumerate(self.springs)
         }
         return self.mechanism.with_springs(new.get(s.name, s) for s in self.mechanism.springs)
@@ -194,8 +194,3 @@ def _diagonal(J: Array) -> Array:
     for i in range(S):
         out[i, :, i] = J[i].T
     return out.reshape(S * N, S * width)
-
-
-def _vec(p: Array) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in p)
-    return x, y, z

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ...energy.fourier.frames import Frames
 from ...energy.fourier.series import Series
 from ...kinematics import Poses, Tree, Velocities
-from ...model.arrays import Array, Booleans
-from ...model.elements import Spring, Vec3
+from ...model.arrays import Array, Booleans, vec3
+from ...model.elements import Spring
 from ...model.mechanism import Mechanism
 from ...model.rotation import skew
 from ..region import Region, free_directions, project
@@ -135,7 +135,7 @@ class SpringBlock(Block):
         taken = {spring.name for spring in mechanism.springs}
         name = next(name for i in range(1, len(taken) + 2) if (name := f"spring {i}") not in taken)
         p_a, p_b = at_ends(self.lift @ self._y(u[None])[0])
-        spring = Spring(name, self.body_a, _point(p_a), self.body_b, _point(p_b), k)
+        spring = Spring(name, self.body_a, vec3(p_a), self.body_b, vec3(p_b), k)
         return mechanism.with_springs((*mechanism.springs, spring))
 
     def enlarged(self, factor: float) -> tuple[SpringBlock, Array]:
@@ -171,8 +171,3 @@ def stretch(poses: Poses, velocities: Velocities, A: int, B: int) -> tuple[Array
 
     origin = (velocities.v[:, B] - velocities.v[:, A]).transpose(0, 2, 1)[..., None]
     return Z, np.concatenate([-turned(A), origin, turned(B)], axis=3)
-
-
-def _point(p: Array) -> Vec3:
-    x, y, z = (float(value) for value in p)
-    return x, y, z

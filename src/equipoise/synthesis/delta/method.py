@@ -29,7 +29,7 @@ from ..method import Method
 from ..options import MethodOptions, option, takes
 from . import two_axis
 from .legs import DeltaLeg, NotDelta, delta_legs
-from .rocker import EQUATION_10, Guide, TwoAxisRocker, rocker_spring, vec3
+from .rocker import EQUATION_10, Guide, TwoAxisRocker, rocker_spring, snapped
 from .workspace import OBJECTIVES, Box, Found, Goal, Objective, best_springs
 
 Variant = Literal["full", "axis", "optimum", "rocker"]
@@ -177,12 +177,12 @@ def full(
         mark = f" {i}"
         two, three, four, _, _ = leg.links
         # link 2' stands above A and turns as link 2; the frame is carried by B and stays upright
-        bodies += [Body(f"link 2'{mark}", link_2p, vec3(leg.B / 2)), Body(f"frame 12{mark}", guide.frame)]
-        above = vec3(leg.A + (guide.BF + guide.FT) * leg.R_WL[:, 2])
+        bodies += [Body(f"link 2'{mark}", link_2p, snapped(leg.B / 2)), Body(f"frame 12{mark}", guide.frame)]
+        above = snapped(leg.A + (guide.BF + guide.FT) * leg.R_WL[:, 2])
         rpy = to_rpy(leg.R_WL)
         joints += [
             Joint(f"A'{mark}", "parallelogram", "world", f"link 2'{mark}", above, follows=two),
-            Joint(f"B'{mark}", "parallelogram", two, f"frame 12{mark}", vec3(leg.B), rpy, follows="world"),
+            Joint(f"B'{mark}", "parallelogram", two, f"frame 12{mark}", snapped(leg.B), rpy, follows="world"),
         ]
         angle = tuple(zip(leg.joints, leg.signs, strict=True))
         rocker = TwoAxisRocker(

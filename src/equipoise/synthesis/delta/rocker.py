@@ -153,7 +153,7 @@ class TwoAxisRocker:
     def springs(self, guide: Guide, mark: str, gravity: float) -> Iterator[Spring]:
         """Springs 10 and 11, and one of Eq. (3) for link 3 where its mass centre is off the axis B."""
         size = float(np.linalg.norm(self.moment))
-        S = vec3(np.array(self.places[1]) + guide.CS * self.moment / size)
+        S = snapped(np.array(self.places[1]) + guide.CS * self.moment / size)
         k10, k11 = guide.stiffness_10(size, gravity), guide.stiffness_11(size, gravity, self.misprint)
         R, T = (0.0, self.C, 0.0), (self.at[0], self.at[1], self.at[2] + guide.BF + guide.FT)
         ten = {"mass": guide.spring_10, "mass_split": 1 - guide.share_10}
@@ -163,7 +163,7 @@ class TwoAxisRocker:
         if self.own.any():
             lengths, B = (guide.BF, guide.BF), np.array(self.at)
             three = rocker_spring(f"spring 3{mark}", self.own, self.cross, Z, B, lengths, gravity, base=self.upright)
-            yield replace(three, p_b=vec3(np.array(self.places[0]) + three.p_b))
+            yield replace(three, p_b=snapped(np.array(self.places[0]) + three.p_b))
 
 
 def rocker_spring(
@@ -187,11 +187,11 @@ def rocker_spring(
     """
     size, (AV, AW), (m7, share) = float(np.linalg.norm(moment)), lengths, mass
     k = gravity * (size + share * m7 * AV) / (AV * AW)
-    V, W = vec3(AV * moment / size), vec3(A + AW * up)
+    V, W = snapped(AV * moment / size), snapped(A + AW * up)
     return Spring(name, base, W, rocker, V, k, mass=m7, mass_split=1 - share)
 
 
-def vec3(p: Array) -> Vec3:
+def snapped(p: Array) -> Vec3:
     """A point of a file: zeros that are only rounding become zeros."""
     x, y, z = (0.0 if abs(value) < 1e-15 else float(value) for value in p)
     return x, y, z

@@ -16,7 +16,7 @@ from ...model.arrays import Array
 from ...model.mechanism import Body, Joint, Mechanism
 from ...model.rotation import to_rpy
 from ..arms.shoulder import Shoulder
-from .rocker import Guide, TwoAxisRocker, vec3
+from .rocker import Guide, TwoAxisRocker, snapped
 
 
 def balanced(mechanism: Mechanism, shoulder: Shoulder, guide: Guide) -> Mechanism:
@@ -62,7 +62,7 @@ def _rocker(m: Mechanism, s: Shoulder) -> tuple[str, Joint, TwoAxisRocker]:
         C=float(s.pitch.tip @ s.roll.axis),
         moment=s.pitch_moment,
         own=s.roll_moment,
-        places=(vec3(s.roll.origin), vec3(s.centre)),
+        places=(snapped(s.roll.origin), snapped(s.centre)),
     )
     return frame, fixed, parts
 

@@ -21,7 +21,7 @@ from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
 from ...model.validate import MAX_SAMPLES, whole_number
 from .legs import DeltaLeg
-from .rocker import vec3
+from .rocker import snapped
 
 Objective = Literal["rms", "peak"]
 OBJECTIVES: tuple[str, ...] = get_args(Objective)
@@ -65,7 +65,7 @@ class Box:
             raise InputError(Fault(("heights",), f"must be two lengths, the smaller first, found {list(heights)}"))
         if not reach >= 0:
             raise InputError(Fault(("reach",), f"must be at least 0 m, found {reach:g}"))
-        return Box(vec3(centre), (float(heights[0]), float(heights[1])), reach)
+        return Box(snapped(centre), (float(heights[0]), float(heights[1])), reach)
 
     def places(self, legs: Sequence[DeltaLeg], samples: int, seed: int) -> Array:
         """(samples + grid, 3) places in the world [m]: random ones, and a grid with the corners of the box."""
@@ -208,7 +208,9 @@ def _springs(
         flat = leg.B - leg.R_2[:, 1] * (leg.R_2[:, 1] @ leg.B)
         V = AV * flat / np.linalg.norm(flat)
         name = f"spring 7 {i}"
-        springs.append(Spring(name, "world", vec3(W), leg.links[0], vec3(V), size / AW, mass=m7, mass_split=1 - share))
+        springs.append(
+            Spring(name, "world", snapped(W), leg.links[0], snapped(V), size / AW, mass=m7, mass_split=1 - share)
+        )
     return springs
 
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from ...kinematics import Tree
 from ...kinematics.sampling import sample
-from ...model.arrays import Array, frozen
-from ...model.elements import Spring, Vec3
+from ...model.arrays import Array, frozen, vec3
+from ...model.elements import Spring
 from ...model.mechanism import Body, Joint, Loop, Mechanism
 from ...model.names import Names
 from ...model.rotation import to_rpy
@@ -94,20 +94,20 @@ class Builder:
             link = self.links[i]
             parent, xyz = self._foot(link, auxiliaries)
             auxiliaries[i] = taken.new(f"{link.name} auxiliary")
-            bodies.append(Body(auxiliaries[i], module.mass, _vec3(module.com)))
-            aside = Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], _vec3(xyz),
+            bodies.append(Body(auxiliaries[i], module.mass, vec3(module.com)))
+            aside = Joint(held.new(f"{link.name} auxiliary"), "parallelogram", parent, auxiliaries[i], vec3(xyz),
                           follows=link.name)  # fmt: skip
             frame = self._upright(i)
             stand = self._stand(frame)
             up = stand.T @ self._up(frame)
             base = taken.new(f"{link.name} pseudobase")
-            bodies.append(Body(base, module.coupler, _vec3(self.height / 2 * up)))
+            bodies.append(Body(base, module.coupler, vec3(self.height / 2 * up)))
             C = link.origin + module.centre
-            over = Joint(held.new(f"{link.name} pseudobase"), "parallelogram", link.name, base, _vec3(C), follows=frame)
+            over = Joint(held.new(f"{link.name} pseudobase"), "parallelogram", link.name, base, vec3(C), follows=frame)
             if self.real:
                 below = self._beneath(link, auxiliaries)
                 aside = replace(aside, type="revolute", follows=None, rpy=to_rpy(self._turn(below, link.name)),
-                                axis=_vec3(link.axis))  # fmt: skip
+                                axis=vec3(link.axis))  # fmt: skip
                 over = replace(
                     over,
                     type="spherical",
@@ -116,18 +116,18 @@ class Builder:
                 )
                 assert link.joint is not None
                 assembly[aside.name] = assembly[link.joint.name]
-                D = Loop(base, _vec3(self.height * up), auxiliaries[i], _vec3(module.centre))
+                D = Loop(base, vec3(self.height * up), auxiliaries[i], vec3(module.centre))
                 if module.planar:
-                    axis = _vec3(stand.T @ self._turn(frame, link.name) @ link.axis)
+                    axis = vec3(stand.T @ self._turn(frame, link.name) @ link.axis)
                     over = replace(over, type="revolute", axis=axis)
-                    D = replace(D, axis_a=axis, axis_b=_vec3(link.axis))
+                    D = replace(D, axis_a=axis, axis_b=vec3(link.axis))
                 loops.append(D)
             joints += [aside, over]
             if i in sprung:
                 K, a, b = sizes[link.name]
                 towards = whole[i].vector / np.linalg.norm(whole[i].vector)
                 A, B = a * up, C + b * towards  # (13), (14)
-                springs.append(Spring(f"{link.name} spring", base, _vec3(A), link.name, _vec3(B), K))
+                springs.append(Spring(f"{link.name} spring", base, vec3(A), link.name, vec3(B), K))
         made = replace(m, bodies=tuple(bodies), joints=tuple(joints), springs=tuple(springs))
         if not self.real:
             return made
@@ -218,8 +218,3 @@ def mobility(turning: int, modules: int) -> tuple[int, int]:
     revolute, spherical = turning + modules, 2 * modules
     freedoms = 6 * (links - (revolute + spherical) - 1) + revolute + 3 * spherical  # (20)
     return freedoms - modules, modules
-
-
-def _vec3(v: Array) -> Vec3:
-    x, y, z = v.tolist()
-    return x, y, z
