@@ -20,6 +20,7 @@ from equipoise.io import files
 ROOT = Path(__file__).parents[1]
 ARM = ROOT / "examples" / "mechanisms" / "lin2010_balanced.yaml"
 UR5 = ROOT / "examples" / "robots" / "ur5.urdf"
+PENDULUM = ROOT / "examples" / "mechanisms" / "pendulum.yaml"
 BALANCED = str(ARM)
 
 WRITERS: dict[str, tuple[str, ...]] = {
@@ -30,8 +31,8 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "model": ("export", BALANCED, "--to", "mjcf", "-o", "OUT.xml"),
     "report": ("report", BALANCED, "--with", "none", "--samples", "64", "-o", "OUT.html"),
     "layouts": ("layouts", "3", "-o", "OUT"),
-    "reproduce": ("reproduce", "lin2010", "-o", "OUT"),
-    "hardware": ("hardware", BALANCED, "-o", "OUT.csv"),
+    "reproduce": ("reproduce", "lenzo2017", "-o", "OUT"),
+    "hardware": ("hardware", str(PENDULUM), "-o", "OUT.csv"),
     "list": ("made-up", "--count", "500", "-o", "OUT.csv"),
     "columns": ("made-up", "--count", "500", "-o", "OUT.parquet"),
 }

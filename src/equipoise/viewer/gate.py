@@ -110,7 +110,8 @@ def _guarded(gate: Gate, messages: Messages) -> Iterator[list[Any]]:
 
     from websockets.asyncio import server
 
-    log = logging.Logger("equipoise.viewer")  # of its own, with no handler: what strangers send is nobody's traceback
+    log = logging.Logger("equipoise.viewer")  # of its own, and silent: what strangers send is nobody's traceback
+    log.addHandler(logging.NullHandler())
     serve, begun = server.serve, []
 
     class Listened(server.ServerConnection):
