@@ -7,12 +7,16 @@ def test_everything_agrees(seeds):            # a block of the numbers 0, 1, 2, 
 @fuzzed(10_000)
 @given(...)
 def test_nothing_escapes(...): ...
+
+@pytest.mark.deep
+@pytest.mark.parametrize("paper", some(PAPERS, here=PAPERS[:1]))
+def test_paper(paper): ...
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 import pytest
@@ -24,11 +28,17 @@ SHARE = 1 if os.environ.get("EQUIPOISE_DEEP") else 20
 BLOCK = 500  # seeds that one test goes through: `make deep` spreads the tests over processes
 
 Test = TypeVar("Test", bound=Callable[..., None])
+Case = TypeVar("Case")
 
 
 def share(count: int) -> int:
     """How many of `count` are run here."""
     return -(-count // SHARE)
+
+
+def some(cases: Iterable[Case], here: Iterable[Case]) -> list[Case]:
+    """All cases under `make deep`, those of `here` elsewhere."""
+    return list(cases if SHARE == 1 else here)
 
 
 def campaign(count: int, block: int = BLOCK) -> Callable[[Test], Test]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import equipoise as eq
 from equipoise.model.errors import EquipoiseWarning
+from equipoise.synthesis import Design
 from equipoise.synthesis.planar.arm import Installation, PlanarArm
 
 ROBOTS = Path(__file__).parents[1] / "examples" / "robots"
@@ -19,6 +20,12 @@ def robot(name: str) -> eq.Mechanism:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EquipoiseWarning)
         return eq.load(ROBOTS / f"{name}.urdf")
+
+
+@cache
+def balanced(name: str = "ur5", radius: float = 0.15) -> Design:
+    """A UR, made weightless by three springs: the search takes seconds, so tests share it."""
+    return eq.design(robot(name), span=3, radius=radius, shape="box", springs=3)
 
 
 def planar_arm(masses: list[float], lengths: list[float], centres: list[float]) -> eq.Mechanism:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from robots import lee_chen, planar_arm, robot
+from robots import balanced, lee_chen, planar_arm, robot
 
 import equipoise as eq
 from equipoise.energy import Potential
@@ -36,7 +36,7 @@ def test_ur5_span_2_reaches_the_bound_with_two_springs():
 
 @pytest.mark.parametrize(("name", "radius"), [("ur5", 0.15), ("ur10", 0.2)])
 def test_three_springs_balance_a_ur_exactly(name, radius):
-    design = eq.design(robot(name), span=3, radius=radius, shape="box", springs=3)
+    design = balanced(name, radius)
     assert len(design.mechanism.springs) == 3
     assert design.balance.exact
     assert design.balance.certificate.kind == "fourier"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from example_files import FOLDER, same
 from loop_zoo import EXAMPLES
 from zoo import ZOO
 
-from equipoise import check, load
+from equipoise import Balance, check, load
 from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.report.figure import save_figure
@@ -75,9 +76,14 @@ def test_is_what_make_writes(file: str) -> None:
     same(load(FOLDER / f"{file}.yaml"), EXAMPLES.FILES[file](), 1e-9, 1e-9, provenance=False)
 
 
+@cache
+def judged(file: str) -> Balance:
+    return check(load(FOLDER / f"{file}.yaml"), samples=256)
+
+
 @pytest.mark.parametrize("file", PROVED)
 def test_verdict_with_loops(file: str) -> None:
-    b = check(load(FOLDER / f"{file}.yaml"), samples=256)
+    b = judged(file)
     assert b.certificate.kind == "fourier"
     assert b.exact
     assert b.relative < 1e-10
@@ -107,6 +113,6 @@ def test_convex_works_with_loops(file: str) -> None:
 
 @pytest.mark.parametrize("file", ["four_bar", "rssr", "delta_balanced"])
 def test_pictures_show_the_loops_closed(file: str, tmp_path: Path) -> None:
-    mechanism = load(FOLDER / f"{file}.yaml")
-    save_figure(mechanism, tmp_path / "picture.svg", balance=check(mechanism, samples=64))
+    b = judged(file)
+    save_figure(b.mechanism, tmp_path / "picture.svg", balance=b)
     assert "nan" not in (tmp_path / "picture.svg").read_text().lower()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign import campaign
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from loop_zoo import four_bar
@@ -63,14 +64,13 @@ def test_random_mechanisms(seed: int, tier: str | None) -> None:
     assert disagreement(m, random_poses(m, 19, seed), tier) < ROUNDING
 
 
-@pytest.mark.slow(reason="2,500 mechanisms are compiled")
-@pytest.mark.parametrize("block", range(10))
-def test_ten_thousand_random_mechanisms_and_poses(block: int) -> None:
-    for seed in range(1000 * block, 1000 * (block + 1), 4):
+@campaign(20_000, block=250)
+def test_many_random_mechanisms(seeds: range) -> None:
+    for seed in seeds:
         m = random_mechanism(seed)
         q = random_poses(m, 4, seed)
         assert disagreement(m, q, "generic") < ROUNDING, seed
-        if seed % 40 == 0:  # each is compiled
+        if seed % 10 == 0:  # each is compiled
             assert disagreement(m, q, "generated") < ROUNDING, seed
 
 

@@ -8,6 +8,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from campaign import share
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from loop_zoo import (
@@ -248,9 +249,7 @@ def volume(p: np.ndarray, t: np.ndarray) -> np.ndarray:
     return -np.linalg.det(np.stack(rods, axis=1))
 
 
-@pytest.mark.parametrize(
-    "count", [2000, pytest.param(100_000, marks=pytest.mark.slow(reason="100,000 poses with loops"))]
-)
+@pytest.mark.parametrize("count", [2000, pytest.param(share(100_000), marks=pytest.mark.deep)])
 def test_every_reachable_delta_pose_closes(count):
     tree = linkage("DELTA")
     places, angles = reachable(count, seed=1)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from campaign import some
 
 SOURCE = Path(__file__).parents[1] / "src"
 LIMIT = 900  # [s] for one reproduction
@@ -171,11 +172,8 @@ def test_there_are_the_six_and_ten_for_each_paper():
     assert len(QUICK) >= len(MUTATIONS) // 20
 
 
-@pytest.mark.slow(reason="reproduces a paper in a process of its own")
-@pytest.mark.parametrize(
-    "mutation",
-    [pytest.param(one, marks=() if one in QUICK else pytest.mark.deep, id=str(one)) for one in MUTATIONS],
-)
+@pytest.mark.deep
+@pytest.mark.parametrize("mutation", some(MUTATIONS, here=QUICK), ids=str)
 def test_a_broken_source_is_noticed(mutation, tmp_path):
     copy = tmp_path / "src"
     shutil.copytree(SOURCE, copy)
@@ -186,7 +184,7 @@ def test_a_broken_source_is_noticed(mutation, tmp_path):
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("paper", BY_PAPER)
+@pytest.mark.parametrize("paper", some(BY_PAPER, here=["lenzo2017"]))
 def test_the_unbroken_source_passes(paper):
     found = reproduce(paper, SOURCE)
     assert found.returncode == 0, found.stderr[-2000:]

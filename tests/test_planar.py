@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from planar_arms import crooked
@@ -100,7 +101,7 @@ def test_a_feasible_layout_of_six_links_is_designed(layout):
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", some(range(4), here=(3,)))
 def test_every_feasible_layout_is_designed_for_random_arms(seed):
     rng = np.random.default_rng(seed)
     for layout in THEORY_5:
@@ -167,7 +168,7 @@ def test_limit():
         for one in arm.installations(found.mechanism):
             assert max(abs(one.a), abs(one.b)) <= limit
     with pytest.raises(InfeasibleError, match=r"within 0\.005 m were found"):
-        eq.design(lee_chen(), "planar", layout=["12", "14", "23", "24"], limit=0.005)
+        eq.design(OF_LENGTH[3], "planar", layout=["12", "13", "23"], limit=0.005)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from campaign import some
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from in_mujoco import set_pose
@@ -335,8 +336,8 @@ def any_arm(n: int) -> eq.Mechanism:
     return eq.Mechanism("any arm", bodies, joints)
 
 
-@pytest.mark.slow(reason="closes the loops of real joints")
-@pytest.mark.parametrize("n", [2, *(pytest.param(n, marks=pytest.mark.deep) for n in range(3, 8))])
+@pytest.mark.deep
+@pytest.mark.parametrize("n", some(range(2, 8), here=(2, 3)))
 def test_real_joints_are_proved_on_the_branch_of_the_assembly_pose(n):
     """Its modules fold within the ranges, where another branch begins that does not balance: it is never met."""
     found = eq.design(any_arm(n), "pseudobase", real=True)

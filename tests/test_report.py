@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from robots import lee_chen_springs, robot
+from robots import balanced, lee_chen_springs
 from zoo import free_length_pendulum, geared_pair, pendulum, vertical_slide
 
 import equipoise as eq
@@ -117,7 +117,7 @@ def test_everything_is_in_the_page(report):
 def ur5(tmp_path_factory) -> Path:
     """The UR5 made weightless by three springs."""
     path = tmp_path_factory.mktemp("ur5") / "ur5-balanced.yaml"
-    eq.save(eq.design(robot("ur5"), span=3, radius=0.15, springs=3).mechanism, path)
+    eq.save(balanced().mechanism, path)
     return path
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from browser import opened
 from peers import peer
-from robots import robot
+from robots import balanced
 
 import equipoise as eq
 from equipoise.report.page.make import make, save_report
@@ -21,7 +21,7 @@ SCHEMES = ("light", "dark")
 def ur5(tmp_path_factory) -> Path:
     """The report of the UR5 made weightless by three springs, with everything in it."""
     path = tmp_path_factory.mktemp("report") / "ur5.html"
-    save_report(make(eq.design(robot("ur5"), span=3, radius=0.15, springs=3).balance), path)
+    save_report(make(balanced().balance), path)
     return path
 
 

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache, partial
@@ -16,15 +15,16 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from campaign import share
 from loop_zoo import four_bar
-from robots import robot
+from robots import balanced
 from zoo import G, exact_pendulum, lee_chen_arm, lenzo_spherical, parallelogram_lamp, pendulum
 
 import equipoise as eq
 from equipoise.kinematics import Tree
 from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
-from equipoise.model.errors import EquipoiseWarning, InputError
+from equipoise.model.errors import InputError
 from equipoise.reproduce import cho2012, lin2010
 from equipoise.simulate import Engine, EngineError, play, release
 from equipoise.simulate.quiet import quiet
@@ -33,13 +33,6 @@ from equipoise.synthesis.delta.robot import DeltaRobot
 SPHERE = 0.05  # [m]
 DEGREE = np.pi / 180
 INERTIA = (0.01, 0.01, 0.01, 0.0, 0.0, 0.0)
-
-
-@cache
-def ur5() -> eq.Mechanism:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EquipoiseWarning)
-        return eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
 
 
 @cache
@@ -103,17 +96,17 @@ def test_the_control_is_the_spring_that_is_felt_most():
     assert found.soft in {spring.name for spring in m.springs}
 
 
-@pytest.mark.slow(reason="ten seconds from twenty poses")
+@pytest.mark.deep
 @pytest.mark.parametrize("name", ["pendulum", "lenzo", "bevel", *LEE])
 def test_exact_designs_stay(name):
-    """20 poses, 10 s: below 1e-6 rad, and the control moves by more than 1 degree from every pose."""
+    """10 s from many poses: below 1e-6 rad, and the control moves by more than 1 degree from every pose."""
     m = {
         "pendulum": lambda: exact_pendulum().mechanism,
         "lenzo": lambda: lenzo_spherical().mechanism,
         "bevel": lambda: cho2012.balanced().mechanism,
         **{layout: partial(lee, layout) for layout in LEE},
     }[name]()
-    found = release(m, seconds=10, poses=20, tolerance=1e-6, radius=SPHERE)
+    found = release(m, seconds=10, poses=share(60), tolerance=1e-6, radius=SPHERE)
     assert found.stays, found.design.largest
     assert found.control is not None
     assert found.control.moved.max(axis=1).min() > DEGREE
@@ -121,11 +114,11 @@ def test_exact_designs_stay(name):
 
 @pytest.mark.slow(reason="ten seconds of six joints")
 def test_a_balanced_ur5_stays():
-    found = release(ur5(), seconds=10, poses=10, tolerance=1e-4)
+    found = release(balanced().mechanism, seconds=10, poses=10, tolerance=1e-4)
     assert found.stays
     assert found.design.largest < 1e-9
     assert found.meaningful
-    fallen = release(ur5().with_springs(()), seconds=1, poses=3)
+    fallen = release(balanced().mechanism.with_springs(()), seconds=1, poses=3)
     assert not fallen.stays
     assert fallen.design.largest > 10 * DEGREE
 

@@ -9,7 +9,7 @@ import pytest
 import zoo
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from robots import robot
+from robots import balanced, robot
 
 import equipoise as eq
 from equipoise.energy.evaluate import Potential
@@ -234,7 +234,7 @@ def test_bad_options(run, tmp_path, arguments, message):
 
 @pytest.mark.slow(reason="a hundred thousand builds")
 def test_a_hundred_thousand_builds_of_a_robot():
-    ur5 = eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
+    ur5 = balanced().mechanism
     found = tolerance(ur5, friction=5.0)
     assert found.peak.shape == (100_000, 6)
     small = tolerance(ur5, Scatter().times(0.02), builds=20_000)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from browser import PATIENCE, opened, wait_until
 from peers import peer
-from robots import robot
+from robots import balanced
 
 import equipoise as eq
 from equipoise.model.mechanism import Mechanism
@@ -29,7 +29,7 @@ PICTURE = (90, 120)  # [px] height and width of the scene's
 
 def example(name: str) -> Mechanism:
     if name == "ur5":
-        return eq.design(robot("ur5"), span=3, radius=0.15, shape="box", springs=3).mechanism
+        return balanced().mechanism
     return eq.load(FOLDER / f"{name}.yaml")
 
 

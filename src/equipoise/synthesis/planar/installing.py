@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
+from functools import cache, lru_cache, partial
 from math import inf, log
 
 import numpy as np
@@ -35,6 +36,7 @@ PATIENCE = 8  # starts without a solution, after which the energy does not count
 PLAIN = 300  # evaluations without the energy
 LIMITS = (1.5, 3.0, 6.0, inf)  # in longest links: tried in turn when no limit is given
 STIFFNESS, A, B = range(3)
+off_diagonal = cache(partial(np.triu_indices, k=1))  # rows and columns of the blocks above the diagonal, of n x n
 
 Fixed = Mapping[tuple[int, int], float]
 """(number of the spring, STIFFNESS or A or B) -> its value [N/m or m]; a and b along the link, the ground's upwards."""
@@ -130,8 +132,10 @@ class Equations:
 
     def blocks(self, x: Array) -> tuple[Array, Array]:
         """The blocks off the diagonal as real rows, and their derivative (rows, springs * width)."""
-        v, D = self.vectors(x)
-        rows, columns = np.triu_indices(self.arm.n, 1)
+        return self._blocks(*self.vectors(x))
+
+    def _blocks(self, v: Complexes, D: Complexes) -> tuple[Array, Array]:
+        rows, columns = off_diagonal(self.arm.n)
         e = (v[:, rows].conj() * v[:, columns]).sum(axis=0)
         e[: self.arm.n - 1] -= self.arm.gravity * self.arm.moments[1:] / self.energy
         own = v[:, None]
@@ -152,21 +156,21 @@ class Equations:
             z[free] = y
             return z.reshape(shape)
 
-        def rows(y: Array) -> Array:
-            z = full(y)
-            stored = weight * self._real(self.vectors(z)[0].ravel())
-            return np.concatenate([self.blocks(z)[0], stored, self._out(z)[0], self._stretched(z)[0]])
+        @lru_cache(1)  # the solver asks for the rows first, and then for their slopes, at one place
+        def both(y: bytes) -> tuple[Array, Array]:
+            z = full(np.frombuffer(y))
+            v, D = self.vectors(z)
+            energy = np.eye(len(z))[:, None, :, None] * D.transpose(0, 2, 1)[:, :, None]
+            stored = weight * self._real(v.ravel()), weight * self._real(energy.reshape(v.size, -1))
+            parts = self._blocks(v, D), stored, self._out(z), self._stretched(z)
+            return np.concatenate([e for e, _ in parts]), np.concatenate([J for _, J in parts])[:, free]
 
-        def slopes(y: Array) -> Array:
-            z = full(y)
-            _, D = self.vectors(z)
-            energy = np.zeros((len(z), self.arm.n, len(z), self.width), complex)
-            for s in range(len(z)):
-                energy[s, :, s] = D[s].T
-            stored = weight * self._real(energy.reshape(len(z) * self.arm.n, -1))
-            return np.concatenate([self.blocks(z)[1], stored, self._out(z)[1], self._stretched(z)[1]])[:, free]
-
-        found = least_squares(rows, x.ravel()[free], jac=slopes, max_nfev=evaluations)  # pyright: ignore[reportArgumentType]
+        found = least_squares(
+            lambda y: both(y.tobytes())[0],
+            x.ravel()[free],
+            jac=lambda y: both(y.tobytes())[1],  # pyright: ignore[reportArgumentType]
+            max_nfev=evaluations,
+        )
         return full(found.x)
 
     def _out(self, x: Array) -> tuple[Array, Array]:
