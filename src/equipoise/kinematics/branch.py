@@ -7,21 +7,22 @@ on through the poses where it folds, and no path strays into the other branch th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import IntEnum
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..model.arrays import Array, Booleans, Integers, frozen
+from ..model.arrays import Array, Integers
 from ..model.mechanism import SINGLE, Body, Coupling, Mechanism
 from . import assembly
 from .closure import Closure
-from .continuation import SHORTEST, follow, tangent
+from .continuation import Closed, follow, tangents
 from .relations import relations
 from .sampling import bounds, inside
-from .tree import Poses, Tree
+from .tolerances import SHORTEST
+from .tree import Tree
 
 NEARBY = 0.05  # [rad, or share of the size] from the assembly pose, where relations are looked for
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
@@ -34,7 +35,7 @@ FLOOD = 3  # nearest reached waypoints that a goal is tried from
 COARSE = (
     0.02  # [rad, or share of the size] shortest step but from the nearest waypoint: it ends far from singular poses
 )
-BATCH_ENTRIES = 8_000_000  # velocities of the poses that are followed together: few of them need the last steps
+DISTANCES = 4_000_000  # between poses and waypoints, held at a time
 REMEMBERED = 131_072  # poses
 
 
@@ -44,15 +45,6 @@ class Status(IntEnum):
     CLOSED = 0
     UNREACHABLE = 1
     SINGULAR = 2
-
-
-@frozen
-class Waypoints:
-    """Closed poses `q` (K, n) with the tangents `T` (K, d, m) and Jacobians `J` (K, count, n) there."""
-
-    q: Array
-    T: Array
-    J: Array
 
 
 class Branch:
@@ -104,13 +96,12 @@ class Branch:
         if not single & {names[j] for j in self.split.dependent}:
             return
         count = 4 * self.open.n
-        start = self.assembled[None].repeat(count, axis=0)
-        T, condition = tangent(self.closure.at(start)[1], self.split)
-        if condition.max(initial=0) > SINGULAR:
+        start = tangents(self.closure, self.split, self.assembled[None])
+        if start.condition.max(initial=0) > SINGULAR:
             return
         aside = np.random.default_rng(0).uniform(-NEARBY, NEARBY, (count, len(first)))
-        goal = start[:, first] + aside * self.closure.scale[first]
-        q, reached = follow(self.closure, self.split, start, T, self.closure.at(start)[1], goal)
+        goal = self.assembled[first] + aside * self.closure.scale[first]
+        q, reached = follow(self.closure, self.split, start, np.zeros(count, int), goal)
         if reached.sum() > 2 * self.open.n:
             yield from relations(q[reached], [name in single for name in names], names, first)
 
@@ -157,7 +148,7 @@ class Branch:
         near = self._nearest(u, way.q)
         todo = np.flatnonzero(np.isfinite(u).all(axis=1))
         for start in near.T:
-            q, reached = self._follow(way, start[todo], u[todo], SHORTEST)
+            q, reached = follow(self.closure, self.split, way, start[todo], u[todo], SHORTEST)
             full[todo[reached]] = q[reached]
             status[todo[reached]] = Status.CLOSED
             todo = todo[~reached]
@@ -166,55 +157,33 @@ class Branch:
     def _without_singular(self, full: Array, status: Integers) -> tuple[Array, Integers]:
         """Poses and their status where singular ones are none."""
         closed = np.flatnonzero(status == Status.CLOSED)
-        bad = closed[~self._regular(full[closed])]
+        bad = closed[~(tangents(self.closure, self.split, full[closed]).condition < SINGULAR)]
         full[bad], status[bad] = np.nan, Status.SINGULAR
         return full, status
 
-    def rates(self, full: Array, poses: Poses) -> Array:
-        """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n) with their poses; NaN where not closed."""
+    def rates(self, full: Array) -> Array:
+        """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n); NaN where not closed."""
         if self.within is not None:
-            inner = full[:, self._kept]
-            return self._spread @ self.within.rates(inner, self.within.open.poses(inner))
+            return self._spread @ self.within.rates(full[:, self._kept])
         split, scale = self.split, self.closure.scale
         rates = np.full((len(full), self.open.n, len(split.independent)), np.nan)
         good = np.flatnonzero(~np.isnan(full).any(axis=1))
-        T, _ = tangent(self.closure.jacobian(full, poses)[good], split)
+        T = tangents(self.closure, split, full[good]).T
         rates[good] = 0.0
         rates[np.ix_(good, split.independent)] = np.eye(len(split.independent))
         rates[np.ix_(good, split.dependent)] = T * scale[split.dependent, None] / scale[split.independent]
         return rates
 
-    def _follow(self, way: Waypoints, start: Integers, goal: Array, shortest: float) -> tuple[Array, Booleans]:
-        def part(i: slice) -> tuple[Array, Booleans]:
-            k = start[i]
-            return follow(self.closure, self.split, way.q[k], way.T[k], way.J[k], goal[i], shortest)
-
-        return self._by_parts(part, len(goal), (np.zeros((0, self.open.n)), np.zeros(0, bool)))
-
-    def _regular(self, q: Array) -> Booleans:
-        """(N,) whether closed poses are no singular ones."""
-
-        def part(i: slice) -> tuple[Booleans]:
-            return (tangent(self.closure.at(q[i])[1], self.split)[1] < SINGULAR,)
-
-        return self._by_parts(part, len(q), (np.zeros(0, bool),))[0]
-
-    def _by_parts(self, work: Callable[[slice], tuple], count: int, nothing: tuple) -> tuple:
-        """What `work` returns for `count` poses, a chunk at a time."""
-        size = max(16, BATCH_ENTRIES // (6 * self.open.n * len(self.open.names)))
-        parts = [work(slice(i, i + size)) for i in range(0, count, size)]
-        return tuple(np.concatenate(found) for found in zip(nothing, *parts, strict=True))
-
     def _nearest(self, u: Array, q: Array) -> Integers:
         """(N, k) numbers of the nearest poses of `q` (K, open.n), nearest first."""
-        k = min(ATTEMPTS, len(q))
-
-        def part(i: slice) -> tuple[Integers]:
-            apart = self._apart(u[i], q)
+        k, size = min(ATTEMPTS, len(q)), max(16, DISTANCES // len(q))
+        found = np.zeros((len(u), k), int)
+        for i in range(0, len(u), size):
+            apart = self._apart(u[i : i + size], q)
             near = np.argpartition(apart, k - 1, axis=1)[:, :k]
-            return (np.take_along_axis(near, np.take_along_axis(apart, near, axis=1).argsort(axis=1), axis=1),)
-
-        return self._by_parts(part, len(u), (np.zeros((0, k), int),))[0]
+            order = np.take_along_axis(apart, near, axis=1).argsort(axis=1)
+            found[i : i + size] = np.take_along_axis(near, order, axis=1)
+        return found
 
     def _apart(self, u: Array, q: Array) -> Array:
         """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths."""
@@ -248,7 +217,7 @@ class Branch:
         return np.maximum(lower, low - margin), np.minimum(upper, high + margin)
 
     @cached_property
-    def _waypoints(self) -> Waypoints:
+    def _waypoints(self) -> Closed:
         rng = np.random.default_rng(0)
         reached = self._with(None, self.assembled[None])
         box = self._ranges
@@ -260,7 +229,7 @@ class Branch:
                 break
         return reached
 
-    def _flooded(self, reached: Waypoints, goals: Array) -> Waypoints:
+    def _flooded(self, reached: Closed, goals: Array) -> Closed:
         """With what can be reached of the goals, each from the nearest poses that are reached already."""
         tried = np.zeros((len(goals), 0), bool)
         todo = np.arange(len(goals))
@@ -270,20 +239,16 @@ class Branch:
             worth = np.isfinite(apart.min(axis=1)) & (tried[todo].sum(axis=1) < FLOOD)
             todo, start = todo[worth], apart[worth].argmin(axis=1)
             tried[todo, start] = True
-            q, done = self._follow(reached, start, goals[todo], COARSE)
+            q, done = follow(self.closure, self.split, reached, start, goals[todo], COARSE)
             reached = self._with(reached, q[done])
             todo = todo[~done]
         return reached
 
-    def _with(self, way: Waypoints | None, q: Array) -> Waypoints:
+    def _with(self, way: Closed | None, q: Array) -> Closed:
         """With the closed poses `q` added, but for singular ones."""
-        J = self.closure.at(q)[1]
-        T, condition = tangent(J, self.split)
-        good = condition < SINGULAR
-        new = Waypoints(q[good], T[good], J[good])
-        if way is None:
-            return new
-        return Waypoints(*(np.concatenate([a, b]) for a, b in ((way.q, new.q), (way.T, new.T), (way.J, new.J))))
+        new = tangents(self.closure, self.split, q)
+        new = new[new.condition < SINGULAR]
+        return new if way is None else way.with_more(new)
 
 
 @lru_cache(maxsize=8)

@@ -74,5 +74,5 @@ class Linkage(Tree):
         """Analytic body velocities per unit rate of each independent coordinate, at `q` (N, n) with its `poses`."""
         full = poses.q if isinstance(poses, ClosedPoses) else self.branch.solve(q)[0]
         velocities = self.open.velocities(full, poses)
-        rates = self.branch.rates(full, poses)[:, None]
+        rates = self.branch.rates(full)[:, None]
         return Velocities(velocities.w @ rates, velocities.v @ rates, velocities.s @ rates[:, 0])

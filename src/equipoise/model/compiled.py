@@ -1,0 +1,50 @@
+"""Functions that numba compiles once and keeps on disk; where nothing can be kept, anew in each process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cached_property
+from threading import Event
+from typing import Any
+
+OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
+
+
+class Compiled:
+    """A function that is compiled when it is first called: who does not call it does not wait for numba.
+
+    It raises nothing by itself; what it calls is `inlined`, and stands in the same file, so that a change of either
+    makes what is kept out of date.
+    """
+
+    broken = Event()  # the directory of what is compiled is of no use to this process
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        self.__doc__ = function.__doc__
+
+    def __call__(self, *arguments: Any) -> Any:
+        if not self.broken.is_set():
+            try:
+                return self._kept(*arguments)
+            except Exception:  # what is kept is spoilt, or cannot be kept on a full disk: numba says it in many ways
+                self.broken.set()
+                with suppress(Exception):
+                    self._kept._cache.flush()  # so that the next run keeps it again
+        return self._own(*arguments)
+
+    @cached_property
+    def _kept(self) -> Any:
+        from numba import njit
+
+        try:
+            return njit(cache=True, **OPTIONS)(self.function)
+        except RuntimeError:  # no directory to keep it in
+            return self._own
+
+    @cached_property
+    def _own(self) -> Any:
+        from numba import njit
+
+        return njit(**OPTIONS)(self.function)
