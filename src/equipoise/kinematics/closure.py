@@ -10,16 +10,48 @@ so that no solver turns a hinge round. Everything is dimensionless: lengths are 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
-from ..model.arrays import Array
+from ..model.arrays import Array, Integers
 from ..model.mechanism import Loop
 from .tree import Tree
 
-if TYPE_CHECKING:
-    from .closing import Loops
+
+class Loops(NamedTuple):
+    """A tree and its loops as arrays, for `closing`.
+
+    Attributes:
+        link: (links, 5) body, parent, base, its first motion and the one after its last; outwards.
+        R0, p0: (links, 3, 3), (links, 3) [m] at zero.
+        row, turns: (motions,) of s, in the links' order; and whether it turns.
+        axis: (motions, 3); turning: (motions, 3, 3, 3) what is constant, times cos and times sin in its rotation.
+        C, s0: s = C q + s0.
+        ends, points: (loops, 2) bodies, (loops, 2, 3) [m] in them.
+        hinge: (hinges,) loops; along: (hinges, 3) axes in body_a; frame: (hinges, 3, 3) rows e, e, b in body_b.
+        scale: (n,) unit of each coordinate; size: [m] unit of lengths.
+        independent, dependent: numbers of coordinates.
+    """
+
+    link: Integers
+    R0: Array
+    p0: Array
+    row: Integers
+    turns: Integers
+    axis: Array
+    turning: Array
+    C: Array
+    s0: Array
+    ends: Integers
+    points: Array
+    hinge: Integers
+    along: Array
+    frame: Array
+    scale: Array
+    size: float
+    independent: Integers
+    dependent: Integers
 
 
 class Closure:
@@ -62,8 +94,6 @@ class Closure:
         return self.size * np.sqrt(square)
 
     def _table(self) -> Loops:
-        from .closing import Loops
-
         tree, index = self.tree, self.tree.index
         motions = [motion for link in tree.links for motion in link.motions]
         last = np.cumsum([len(link.motions) for link in tree.links]).tolist()

@@ -72,10 +72,10 @@ def follow(
     Returns:
         (N, n) closed poses at the goals, and (N,) which of them were reached; the others are anywhere.
     """
-    from . import closing
+    from . import paths
 
     q, done = np.empty((len(goal), closure.tree.n)), np.zeros(len(goal), bool)
     table = closure.table._replace(independent=split.independent, dependent=split.dependent)
     goal = np.ascontiguousarray(goal, float)
-    closing.paths(table, len(closure.tree.names), start.q, start.T, start.J, which, goal, shortest, q, done)
+    paths.follow(table, len(closure.tree.names), start.q, start.T, start.J, which, goal, shortest, q, done)
     return q, done
