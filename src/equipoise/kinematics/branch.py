@@ -25,6 +25,7 @@ from .tolerances import SHORTEST
 from .tree import Tree
 
 NEARBY = 0.05  # [rad, or share of the size] from the assembly pose, where relations are looked for
+NOTHING = 1e-12  # a smaller derivative of the loop equations is rounding
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
 WAYPOINTS = 512  # goals of a round
 FLOODS = 4  # each in the box of what the last has reached
@@ -54,7 +55,8 @@ class Branch:
         open: the spanning tree, loops ignored.
         assembled: (open.n,) the closed pose that all others are reached from.
         mobility: how many ways the mechanism can move.
-        within: the branch of the mechanism with the relations as couplings; None where there are none.
+        within: the branch of the mechanism with the relations as couplings, in the coordinates `kept` of this one; None
+            where there are none.
         split: which coordinates of the spanning tree are independent.
 
     Raises:
@@ -80,9 +82,9 @@ class Branch:
                 independent=tuple(names[j] for j in self.split.independent),
                 assembly=tuple((name, start[name]) for name in kept),
             ))  # fmt: skip
-            self._kept = [names.index(name) for name in kept]
+            self.kept = [names.index(name) for name in kept]
             self._spread, self._offset = np.zeros((len(names), len(kept))), np.zeros(len(names))
-            self._spread[self._kept, range(len(kept))] = 1.0
+            self._spread[self.kept, range(len(kept))] = 1.0
             for one in found:
                 j = names.index(one.joint)
                 self._offset[j] = one.offset
@@ -161,10 +163,33 @@ class Branch:
         full[bad], status[bad] = np.nan, Status.SINGULAR
         return full, status
 
+    def close(self, full: Array) -> Array:
+        """(N,) how many times nearer to a singular pose than usual `full` (N, open.n) is; 0 where it is not closed.
+
+        By the least change of the loop equations for a unit change of the dependent coordinates: it is nothing at a
+        singular pose, and grows with the distance. Where relations lead through one, it counts nevertheless: ask
+        `within` for those that they do not lead through.
+        """
+        found = np.zeros(len(full))
+        good = np.flatnonzero(~np.isnan(full).any(axis=1))
+        with np.errstate(divide="ignore"):
+            found[good] = self._usual / self._distance(full[good])
+        return found
+
+    def _distance(self, full: Array) -> Array:
+        there = tangents(self.closure, self.split, full)
+        return np.linalg.norm(there.J, axis=(1, 2)) / there.condition
+
+    @cached_property
+    def _usual(self) -> float:
+        """The distance of half of the waypoints."""
+        q = self._waypoints.q if self.within is None else self.within._waypoints.q @ self._spread.T + self._offset
+        return float(np.median(self._distance(q)))
+
     def rates(self, full: Array) -> Array:
         """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n); NaN where not closed."""
         if self.within is not None:
-            return self._spread @ self.within.rates(full[:, self._kept])
+            return self._spread @ self.within.rates(full[:, self.kept])
         split, scale = self.split, self.closure.scale
         rates = np.full((len(full), self.open.n, len(split.independent)), np.nan)
         good = np.flatnonzero(~np.isnan(full).any(axis=1))
@@ -186,8 +211,11 @@ class Branch:
         return found
 
     def _apart(self, u: Array, q: Array) -> Array:
-        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths."""
-        a, b = u / self._width, q[:, self.split.independent] / self._width
+        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths.
+
+        Of those that matter to the loops: what turns a loop as a whole needs no other start.
+        """
+        a, b = u[:, self._matters] / self._width, q[:, self.split.independent[self._matters]] / self._width
         return np.sqrt(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T, 0.0))
 
     @cached_property
@@ -197,8 +225,14 @@ class Branch:
 
     @cached_property
     def _width(self) -> Array:
-        lower, upper = self._ranges
+        lower, upper = (end[self._matters] for end in self._ranges)
         return np.where(upper > lower, upper - lower, 1.0)
+
+    @cached_property
+    def _matters(self) -> Integers:
+        """Which of the independent coordinates change the loop equations: at random poses, open ones too."""
+        J = self.closure.at(np.random.default_rng(0).uniform(-1, 1, (8, self.open.n)))[1][:, :, self.split.independent]
+        return np.flatnonzero(np.abs(J).max(axis=(0, 1), initial=0) > NOTHING)
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -213,7 +247,7 @@ class Branch:
         if len(q) == 0:
             return lower, upper
         low, high = (f(q[:, self.split.independent], axis=0) for f in (np.min, np.max))
-        margin = MARGIN * np.maximum(high - low, self._width / WAYPOINTS)
+        margin = MARGIN * np.maximum(high - low, (upper - lower) / WAYPOINTS)
         return np.maximum(lower, low - margin), np.minimum(upper, high + margin)
 
     @cached_property

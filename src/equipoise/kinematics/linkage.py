@@ -57,6 +57,16 @@ class Linkage(Tree):
         """(N,) the `Status` of each pose."""
         return self.branch.solve(q)[1]
 
+    def close(self, q: Array) -> tuple[Array, Array]:
+        """How many times nearer to a singular pose than usual, 0 where the loops do not close.
+
+        Returns:
+            (N,) to one that no relation between joints leads through, and (N,) to any.
+        """
+        full, branch = self.branch.solve(q)[0], self.branch
+        every = branch.close(full)
+        return (every if branch.within is None else branch.within.close(full[:, branch.kept])), every
+
     def narrow(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """The part of a box of configurations that the loops let it reach."""
         low, high = self.branch.box

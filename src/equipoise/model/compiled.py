@@ -43,7 +43,7 @@ class Compiled:
         from numba import njit
 
         try:
-            made = njit(cache=True, **OPTIONS)(self.function)
+            made: Any = njit(cache=True, **OPTIONS)(self.function)
         except RuntimeError:  # no directory to keep it in
             return self._own
         with suppress(AttributeError):  # numba itself looks at the function's own file only
