@@ -27,7 +27,7 @@ class Compiled:
 
     def __init__(self, function: Callable[..., Any], *modules: ModuleType, loose: bool = False) -> None:
         self.function, self.modules = function, modules
-        self.options = OPTIONS | ({"fastmath": {"contract", "reassoc", "nsz"}} if loose else {})
+        self.options: dict[str, Any] = OPTIONS | ({"fastmath": {"contract", "reassoc", "nsz"}} if loose else {})
         self.__doc__ = function.__doc__
 
     def __call__(self, *arguments: Any) -> Any:
