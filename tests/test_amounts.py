@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pint
 import pytest
 from zoo import pendulum
 
@@ -21,6 +22,7 @@ from equipoise.hardware.stock.movable import Travel
 from equipoise.io import loaded
 from equipoise.model.errors import InputError
 from equipoise.model.payload import Payload
+from equipoise.model.units import SI_UNITS, USUAL, to_si
 from equipoise.report.page.make import make
 from equipoise.robust import Scatter, adjust, sweep, tolerance
 from equipoise.simulate import play, release
@@ -141,6 +143,15 @@ def test_another_unit_is_an_error_that_names_the_field(call, field: str) -> None
     with pytest.raises(InputError) as error:
         call()
     assert [fault.field for fault in error.value.faults] == [field]
+
+
+def test_usual_units_are_what_pint_makes_of_them() -> None:
+    registry = pint.UnitRegistry(cache_folder=None)
+    for dimension, known in USUAL.items():
+        for unit, factor in known.items():
+            si = registry.Quantity(1.0, registry.parse_units(unit)).m_as(SI_UNITS[dimension].replace(" ", "*"))
+            assert factor == si, f"{unit} as {dimension}"
+            assert to_si(f"3.7 {unit}", dimension) == 3.7 * factor
 
 
 def test_fields_made_from_amounts_are_fields_like_others() -> None:

@@ -260,9 +260,22 @@ def test_help_of_every_command_has_an_example(run):
 
 
 def test_importing_the_package_imports_nothing_heavy():
-    heavy = ("scipy", "pydantic", "pint", "clarabel", "matplotlib", "mujoco", "typer", "ruamel")
+    heavy = ("numpy", "scipy", "pydantic", "pint", "clarabel", "matplotlib", "mujoco", "typer", "ruamel")
     code = f"import sys, equipoise; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_a_verdict_waits_for_no_solver_and_no_rare_unit(pendulum):
+    heavy = ("scipy", "numba", "pint", "clarabel", "rich.progress", "equipoise.synthesis")
+    code = f"""
+import atexit, runpy, sys
+atexit.register(lambda: print([name for name in {heavy} if name in sys.modules]))
+sys.argv = ["equipoise", "check", {str(pendulum())!r}, "--samples", "100"]
+runpy.run_module("equipoise", run_name="__main__")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "EXACT" in done.stdout
+    assert done.stdout.splitlines()[-1] == "[]"
 
 
 def test_a_torque_as_tolerance_needs_joints_that_turn(run, tmp_path):

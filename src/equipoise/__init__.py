@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
 from .model import notebook
-from .model.elements import Spring, TorsionSpring
-from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
+    from .model.elements import Spring, TorsionSpring
+    from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
     from .synthesis import Design, Load, Problem, Region, design, solve
 
 __all__ = [
@@ -46,26 +46,23 @@ __all__ = [
     "solve",
 ]
 
-_LAZY = {
-    "Balance": "balance",
-    "check": "balance",
-    "load": "io",
-    "save": "io",
-    "Design": "synthesis",
-    "Load": "synthesis",
-    "Problem": "synthesis",
-    "Region": "synthesis",
-    "design": "synthesis",
-    "solve": "synthesis",
+_PLACES = {
+    "balance": ("Balance", "check"),
+    "io": ("load", "save"),
+    "model.elements": ("Spring", "TorsionSpring"),
+    "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
+    "synthesis": ("Design", "Load", "Problem", "Region", "design", "solve"),
 }
+_MODULE = {name: module for module, names in _PLACES.items() for name in names}
 
 notebook.supplied_by(lambda: import_module(f"{__name__}.report.notebook"))
 
 
 def __getattr__(name: str) -> Any:
-    # what computes is imported on first use, so that `import equipoise` stays quick
-    if name in _LAZY:
-        return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)
+    # imported on first use, so that `import equipoise` waits for nothing
+    if name in _MODULE:
+        found = globals()[name] = getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
+        return found
     raise AttributeError(f"module 'equipoise' has no attribute '{name}'")
 
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from ..model import slips
 from ..model.errors import Fault, InputError, nearest
 from ..model.units import quantity, to_share, to_si
-from ..synthesis import Parameter, Region
 from . import terminal
 
 if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
     from ..model.payload import Payload
+    from ..synthesis import Parameter, Region
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -137,6 +137,8 @@ def regions(texts: list[str], box: bool) -> dict[str, Region]:
     Raises:
         InputError: no ``=``, or not a length more than 0.
     """
+    from ..synthesis import Region
+
     make = Region.box if box else Region.ball
     found = {}
     for text in texts:

@@ -78,13 +78,16 @@ def shown_warnings() -> Iterator[list[warnings.WarningMessage]]:
 @contextmanager
 def progress_bar(start: str) -> Iterator[Progress]:
     """A progress bar on standard error, when that is a terminal, for work of more than a second."""
-    from rich import progress
-
     from ..report.text import console
 
     screen = console(stderr=True)
+    if not screen.is_terminal:
+        yield lambda what, share: None
+        return
+    from rich import progress  # slow to import, for nothing where nobody looks
+
     columns = (progress.TextColumn("{task.description}"), progress.BarColumn(), progress.TimeElapsedColumn())
-    with progress.Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
+    with progress.Progress(*columns, console=screen, transient=True) as bar:
         task = bar.add_task(start, total=1.0)
         yield lambda what, share: bar.update(task, description=what, completed=share, total=1.0 if share else None)
 

@@ -31,6 +31,20 @@ SI_UNITS = {
 }
 """The dimensions a field can have, and the unit a bare number of it is in."""
 
+USUAL = {
+    "length": {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254},
+    "angle": {"rad": 1.0, "deg": math.pi / 180},
+    "mass": {"kg": 1.0, "g": 0.001},
+    "stiffness": {"N/m": 1.0, "N/cm": 100.0, "N/mm": 1000.0, "kN/m": 1000.0},
+    "torsional stiffness": {"N m/rad": 1.0, "N*m/rad": 1.0, "N mm/rad": 0.001},
+    "acceleration": {"m/s^2": 1.0},
+    "torque": {"N m": 1.0, "N*m": 1.0, "N mm": 0.001},
+    "time": {"s": 1.0, "ms": 0.001, "min": 60.0},
+    "force": {"N": 1.0, "kN": 1000.0},
+    "stress": {"Pa": 1.0, "MPa": 1e6},
+}
+"""What most files are written in: how much of the SI unit one is. For these `pint` need not be started (0.9 s)."""
+
 Amount = float | str
 """A number in the SI unit of what is asked for, or text with a unit, such as ``150 mm``; of a share, such as ``2%``."""
 
@@ -42,7 +56,7 @@ _UNIT = re.compile(r"(?:[A-Za-zµ°%]++(?:\^[1-4]|\*\*[1-4])?+|[*/ ().·²³])++
 
 @cache
 def _registry() -> Any:
-    import pint  # 0.8 s to import: only files that use units pay for it
+    import pint  # 0.9 s with its definitions: only files with rarer units pay for it
 
     return pint.UnitRegistry(cache_folder=None)
 
@@ -65,7 +79,7 @@ def to_si(value: object, dimension: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (Real, str)):
         raise InputError(f"{expected}, found {_show(value)}")
     if isinstance(value, str):
-        number = _parse(value, unit, expected)
+        number = _parse(value, dimension, expected)
     else:
         try:
             number = float(value)
@@ -171,8 +185,8 @@ class AmountField:
         owner.__dict__[self.name] = number
 
 
-def _parse(text: str, unit: str, expected: str) -> float:
-    text = text.strip()
+def _parse(text: str, dimension: str, expected: str) -> float:
+    text, unit = text.strip(), SI_UNITS[dimension]
     match = _NUMBER.match(text) if len(text) <= LONGEST else None
     found = text[match.end() :].strip() if match else ""
     if match is None or not (found == "" or _UNIT.fullmatch(found)):
@@ -182,6 +196,8 @@ def _parse(text: str, unit: str, expected: str) -> float:
         return number
     if not unit:
         raise InputError(f"{expected} without a unit, found {_show(text)}")
+    if found in USUAL.get(dimension, ()):
+        return number * USUAL[dimension][found]
     try:
         # parse_units takes names, products and powers only: nothing in a file is evaluated
         return float(_registry().Quantity(number, _registry().parse_units(found.replace("·", "*"))).m_as(_pint(unit)))

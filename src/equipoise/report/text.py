@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console, RenderableType
@@ -15,8 +16,10 @@ from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
 from ..model.units import SI_UNITS
-from ..synthesis import METHODS, Design, Parameter
-from ..synthesis.convex.ordinary import Ordinary
+
+if TYPE_CHECKING:  # a verdict waits for no method
+    from ..synthesis import Design, Parameter
+    from ..synthesis.convex.ordinary import Ordinary
 
 
 def console(stderr: bool = False) -> Console:
@@ -34,6 +37,15 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
             f"mobility {mobility.numerical} by the rank of the loop equations, {mobility.gruebler} by counting them: "
             f"{_count(range(mobility.redundant), 'equation')} follow from the others"
         )
+    if (singular := balance.singular) is not None:
+        what = (
+            "relations between its joints lead through"
+            if singular.passed
+            else f"poses {singular.nearer:g} times nearer to one than usual are left out everywhere, "
+            f"{singular.left_out:,} of the random ones"
+        )
+        where = pose(balance.coordinates, singular.configuration)
+        yield Text(f"singular poses lie inside the ranges, one beside {where}: {what}")
     yield verdict(balance)
     if tolerance:
         yield Text(tolerance)
@@ -89,6 +101,8 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
 
 def design_lines(design: Design) -> Iterator[RenderableType]:
     """What was reached, how that compares with the best possible, the front if there is one, and the verdict."""
+    from ..synthesis import METHODS
+
     method = METHODS[design.method]
     share = design.residual / design.unbalanced
     which = "all joints" if design.joints is None else ", ".join(design.joints)
@@ -100,11 +114,7 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     if design.bound is not None and design.certified_gap is not None:
         least = f"{torque(design.bound, floor)} N m  = {percent(design.bound / design.unbalanced)}"
         gap = f"gap {percent(design.certified_gap)} of unbalanced"
-        why = (
-            "the balance is exact"
-            if METHODS[design.method].exact
-            else "no springs on these pairs and regions leave less"
-        )
+        why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
         yield Text(f"  bound       {least}: {why}; {gap}")
     for load in design.loads if len(design.loads) > 1 else ():
         share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
@@ -162,6 +172,8 @@ def front_table(design: Design) -> Table:
 
 def methods_table(mechanism: Mechanism) -> Table:
     """Which methods apply to a mechanism, and why the others do not."""
+    from ..synthesis import METHODS
+
     table = Table(box=None, pad_edge=False, header_style="dim")
     for title in ("method", "applies", "what it does", "--set"):
         table.add_column(title)
