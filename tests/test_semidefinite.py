@@ -90,7 +90,7 @@ def test_enlarged_is_the_problem_with_larger_regions():
 def test_peak_bound_holds_for_random_designs_and_is_reached():
     compressed = least_squares_form.build(Problem.of(lee_chen(), span=1, radius=0.15, samples=500, objective="peak"))
     peak = Peak.of(compressed)
-    bound = peak.bound().value
+    bound = peak.bound.value
     rng = np.random.default_rng(0)
     for _ in range(200):
         pair = rng.integers(len(compressed.blocks), size=(1, 3))
