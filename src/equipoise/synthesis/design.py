@@ -46,7 +46,8 @@ class Infeasible:
 
     Attributes:
         least: [N m] root mean square torque that every choice of springs leaves.
-        far: the same with regions ten times as large, which tells whether the pairs or the regions are to blame.
+        far: the same with regions ten times as large, 0 where that is exact or not known: it tells whether the pairs
+            or the regions are to blame.
         remedies: of the nearest other pairs, those any one of which would make exact balance possible.
         tried: how many other pairs that was.
     """

@@ -32,7 +32,7 @@ ROUNDS = 3  # of all prices with other first weights, while the bound is not rea
 BEAM = 3  # sets of each size that parts are taken away from
 LARGEST = 12  # parts of a set that is looked at
 SETS = 24  # sets of blocks for random starts
-AROUND = 3  # starts around each set that a part was taken away from
+AROUND, FEW = 3, 5  # starts around each set that a part was taken away from, where it had at most so many
 SCATTER = 0.3  # by which their shapes and the logarithms of their amounts scatter
 
 
@@ -192,6 +192,6 @@ class SpringSearch:
                         self._by_program(self.goal.on(chosen), LOW, chosen)
             if sets:
                 less = Parts.joined([one.parts.without(i) for one in sets for i in range(count)])
-                around = [less.scattered(self.goal.reduced, SCATTER, rng) for _ in range(AROUND)]
+                around = [less.scattered(self.goal.reduced, SCATTER, rng) for _ in range(AROUND if count <= FEW else 0)]
                 self._offer(self.goal, Parts.joined([less, *around]))
             self.progress("taking springs away", 1 / count)

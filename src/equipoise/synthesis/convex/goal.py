@@ -14,6 +14,9 @@ from .least_squares_form import LeastSquaresForm
 from .polish import Parts, best_amounts, polish, residual
 from .semidefinite import Bound, Program, rms_program
 
+MANY = 8  # sets that are polished to the end; of more the better ones
+SHORT = 30  # iterations that tell which those are
+
 
 class Goal(ABC):
     """Values are shares of `unit`.
@@ -48,7 +51,7 @@ class Goal(ABC):
 
     @abstractmethod
     def improve(self, parts: Parts) -> tuple[Parts, Array]:
-        """Local optima near sets of parts, and their values (batch,)."""
+        """Local optima near the more promising of these sets of parts, and their values (batch,)."""
 
     @abstractmethod
     def loads(self, parts: Parts) -> tuple[Array, Array]:
@@ -79,6 +82,9 @@ class Rms(Goal):
         fitted = best_amounts(self.reduced, parts)
         better = rms(self.reduced, fitted) < rms(self.reduced, parts)
         start = replace(parts, k=np.where(better[:, None], fitted.k, parts.k))
+        if len(start) > MANY:
+            start, value = polish(self.reduced, start, SHORT)
+            start = start[np.argsort(value, kind="stable")[: max(MANY, len(start) // 4)]]
         return polish(self.reduced, start)
 
     def loads(self, parts: Parts) -> tuple[Array, Array]:

@@ -27,12 +27,13 @@ from .few_springs import ROUNDING_SHARE, SpringSearch, SpringSet
 from .goal import Goal, Rms
 from .least_squares_form import LeastSquaresForm, build
 from .peak import Peak
-from .semidefinite import least_rms
+from .semidefinite import least_rms, rms_program
 
 ROUNDING = 1e-13
 SPRINGS_TRIED = 8  # springs tried when no number is given
 FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
 REMEDIES = 24  # other pairs tried when exact balance is infeasible
+SINGLY = 5  # of them that are tried one by one, where they help all together
 FEW = 300  # poses that tell whether exact balance is possible
 
 
@@ -190,26 +191,30 @@ def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
     wide = build(wider)
     number = {block.place: i for i, block in enumerate(wide.blocks)}
     unit = reduced.unbalanced
-    far = _least(reduced.enlarged(FAR))
+    try:
+        far = least_rms(reduced.enlarged(FAR)).value
+    except EquipoiseError:
+        far = 0.0  # not known
     remedies = _remedies(wide, [number[place] for place in own], [number[pair] for pair in missing])
     places = tuple(wide.blocks[i].place for i in remedies)
-    return Infeasible(own, bound * unit, far * unit if FEASIBLE <= far < 1 else 0.0, places, len(missing))
+    return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing))
 
 
-def _least(reduced: LeastSquaresForm) -> float:
-    """The bound, as a share; 1 where the solver finds none."""
+def _feasible(reduced: LeastSquaresForm) -> bool:
+    """Whether exact balance is possible as far as the solver can tell."""
     try:
-        return least_rms(reduced).value
+        return rms_program(reduced).reaches(FEASIBLE)
     except EquipoiseError:
-        return 1.0
+        return False
 
 
 def _remedies(wide: LeastSquaresForm, stay: list[int], others: list[int]) -> list[int]:
     """Those of the others any one of which makes exact balance possible: none where all together do not."""
-    if not others or _least(wide.on([*stay, *others])) >= FEASIBLE:
+    if not others or not _feasible(wide.on([*stay, *others])):
         return []
-    half = len(others) // 2
-    return others if not half else _remedies(wide, stay, others[:half]) + _remedies(wide, stay, others[half:])
+    size = len(others) // 2 if len(others) > SINGLY else 1
+    groups = [others[i : i + size] for i in range(0, len(others), size)] if len(others) > 1 else []
+    return [one for group in groups for one in _remedies(wide, stay, group)] if groups else others
 
 
 def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from .least_squares_form import LeastSquaresForm
 
 LINEAR = ("zero", "nonnegative")
 FINE, COARSE = 1e-9, 1e-6  # tolerances of a bound, and of where parts are looked for
+SAFE = 10.0  # times what the solver still violates: so far its optimum may be off
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
 
@@ -87,7 +88,8 @@ class Program:
         solution = self._compiled(FINE).solve()
         # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay safe
         violation = self._violation(solution)
-        return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), self._unknowns(solution))
+        least = min(solution.obj_val, solution.obj_val_dual) - SAFE * violation
+        return Bound(max(0.0, least), self._unknowns(solution))
 
     def priced(self, weights: Sequence[Array]) -> tuple[Array, ...]:
         """The unknowns in the program's units that minimise the last unknown plus weights times those of each block.
@@ -101,6 +103,21 @@ class Program:
         solution = self._coarse.solve()
         self._violation(solution)
         return tuple(own / scale for own, scale in zip(self._unknowns(solution), self.scale, strict=True))
+
+    def reaches(self, value: float) -> bool:
+        """Whether the optimum is below `value`; it takes fewer iterations than the optimum itself.
+
+        Raises:
+            EquipoiseError: the solver stopped before that was clear.
+        """
+        solver = self._compiled(FINE)
+        solver.set_termination_callback(
+            lambda now: now.cost_dual > value + SAFE * max(now.res_primal, now.res_dual, now.gap_abs)
+        )
+        solution = solver.solve()
+        if str(solution.status) != "CallbackTerminated":
+            self._violation(solution)
+        return min(solution.obj_val, solution.obj_val_dual) < value
 
     def _violation(self, solution: Any) -> float:
         violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
