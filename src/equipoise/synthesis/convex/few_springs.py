@@ -65,7 +65,7 @@ class SpringSearch:
     Attributes:
         most: parts that are wanted, at most.
         found: the best sets of each number of parts, once it was `explored`.
-        seen: the blocks on which the program by itself was solved.
+        seen: the blocks on which the program by itself was solved; tried: the prices at which it was on all.
     """
 
     goal: Goal
@@ -74,6 +74,7 @@ class SpringSearch:
     progress: Progress = silent
     found: dict[int, list[SpringSet]] = field(default_factory=dict)
     seen: set[tuple[int, ...]] = field(default_factory=set)
+    tried: set[tuple[int, int]] = field(default_factory=set)
     explored: bool = False
 
     @cached_property
@@ -93,6 +94,10 @@ class SpringSearch:
         if not self.explored:
             self.explored = True
             self._explore()
+        return self._best_of(most)
+
+    def _best_of(self, most: int) -> SpringSet | None:
+        """The best of those found so far."""
         sets = [one for count in sorted(self.found) if count <= most for one in self.found[count]]
         exact = [one for one in sets if one.exact]
         least = min((one.value for one in sets), default=0.0)
@@ -108,15 +113,26 @@ class SpringSearch:
                 if found.exact or (self.floor >= FEASIBLE and found.value <= self.floor * (1 + CLOSE)):
                     break
 
+    def few(self) -> SpringSet | None:
+        """The fewest parts found that are enough; where the bound is not zero, without looking further than to them."""
+        if self.floor >= FEASIBLE and not self.explored:
+            for number in range(len(PRICES)):
+                self._at_price(0, number)
+                if self._fewest(self.most):
+                    break
+            self._shrink()
+        if not (self.explored or self._fewest(self.most)):
+            self.best(self.most)
+        return self._best_of(self._fewest(self.most))
+
     def enough(self, found: SpringSet) -> bool:
         """Whether more parts are not worth it: it is exact, or near a bound that says that none are."""
         return found.exact or (self.floor >= FEASIBLE and found.value <= self.floor + NEAR)
 
     def _explore(self) -> None:
         for turn in range(ROUNDS):
-            for number, price in enumerate(PRICES):
-                self._by_program(self.goal, price, [turn, number])
-                self.progress("choosing springs", (number + 1) / len(PRICES))
+            for number in range(len(PRICES)):
+                self._at_price(turn, number)
             if self._fewest(LARGEST):
                 break
         self._shrink()
@@ -132,6 +148,12 @@ class SpringSearch:
         """The fewest parts that are enough; 0 where no set of at most so many is."""
         every = (count for count, sets in self.found.items() if count <= most and any(map(self.enough, sets)))
         return min(every, default=0)
+
+    def _at_price(self, turn: int, number: int) -> None:
+        if (turn, number) not in self.tried:
+            self.tried.add((turn, number))
+            self._by_program(self.goal, PRICES[number], [turn, number])
+            self.progress("choosing springs", (number + 1) / len(PRICES))
 
     def _by_program(self, goal: Goal, price: float, seed: Sequence[int]) -> None:
         try:

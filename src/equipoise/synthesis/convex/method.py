@@ -156,8 +156,7 @@ def _bound(goal: Goal) -> float | None:
 
 def _found(search: SpringSearch, few: bool) -> SpringSet:
     """The design to deliver: the best, or if `few` one that is good enough."""
-    enough = next(filter(search.enough, search.front()), None) if few else None
-    best = enough or search.best(search.most)
+    best = (search.few() if few else None) or search.best(search.most)
     if best is None or best.value > 1 - ROUNDING_SHARE:
         raise InfeasibleError("no springs on these pairs lower the torque of the joints that count")
     if search.floor > best.value + FEASIBLE:
