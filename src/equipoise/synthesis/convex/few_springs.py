@@ -32,7 +32,8 @@ ROUNDS = 3  # of all prices with other first weights, while the bound is not rea
 BEAM = 3  # sets of each size that parts are taken away from
 LARGEST = 12  # parts of a set that is looked at
 SETS = 24  # sets of blocks for random starts
-AROUND, FEW = 3, 5  # starts around each set that a part was taken away from, where it had at most so many
+FEW = 5  # parts: of sets with more only the best gets smaller, without starts around it
+AROUND = 3  # starts around each set that a part was taken away from
 SCATTER = 0.3  # by which their shapes and the logarithms of their amounts scatter
 
 
@@ -136,13 +137,13 @@ class SpringSearch:
             if self._fewest(LARGEST):
                 break
         self._shrink()
-        fewest = self._fewest(LARGEST)
-        most = min(self.most, fewest - 1) if fewest else self.most
         if self.floor < FEASIBLE:  # exact with fewer, perhaps; above it the bound has been reached
+            most = min(self.most, (self._fewest(LARGEST) or LARGEST) - 1)
             while most and self._on_fewer(most):
                 most -= 1
-        if most and (self.floor < FEASIBLE or (not fewest and self.floor < 1 - FEASIBLE)):
-            self._by_chance(most)
+        hope = self.floor < FEASIBLE or (self.floor < 1 - FEASIBLE and not self._fewest(LARGEST))
+        if hope and not self._fewest(self.most):
+            self._by_chance(self.most)
 
     def _fewest(self, most: int) -> int:
         """The fewest parts that are enough; 0 where no set of at most so many is."""
@@ -206,7 +207,7 @@ class SpringSearch:
         """Take parts away one by one, down to one, and blocks, on which the program is solved again."""
         rng = np.random.default_rng(self.seed)
         for count in range(max(self.found, default=1), 1, -1):
-            sets = list(self.found.get(count, ()))
+            sets = self.found.get(count, [])[: BEAM if count <= FEW else 1]
             for places in (tuple(np.unique(one.parts.block).tolist()) for one in sets):
                 for chosen in combinations(places, len(places) - 1):
                     if chosen and chosen not in self.seen:
