@@ -8,7 +8,7 @@ from pathlib import Path
 import equipoise as eq
 from equipoise.model.errors import EquipoiseWarning
 from equipoise.synthesis import Problem
-from equipoise.synthesis.convex.few_springs import FEASIBLE
+from equipoise.synthesis.convex.block_sets import FEASIBLE
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.semidefinite import least_rms
 

@@ -13,7 +13,9 @@ from equipoise.energy import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.synthesis import Problem, Region, by_name
-from equipoise.synthesis.convex.few_springs import FEASIBLE, SpringSearch
+from equipoise.synthesis.convex.block_sets import FEASIBLE
+from equipoise.synthesis.convex.few_springs import SpringSearch
+from equipoise.synthesis.convex.goal import Rms
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.semidefinite import least_rms
 
@@ -90,9 +92,9 @@ def test_fewest_springs_of_planar_arms_is_the_number_of_links():
     """THEORY section 3: a star on n vertices needs n - 1 springs; links without the ground are n - 1."""
     for links in (1, 2, 3):
         arm = planar_arm([1.0] * links, [0.3] * links, [0.15] * links)
-        search = SpringSearch(build(Problem.of(arm, span=links, radius=0.6)))
+        search = SpringSearch(Rms(build(Problem.of(arm, span=links, radius=0.6))), links)
         found = [search.best(count) for count in range(1, links + 1)]
-        assert [f.exact for f in found] == [False] * (links - 1) + [True]
+        assert [f is not None and f.exact for f in found] == [False] * (links - 1) + [True]
 
 
 def test_the_residual_is_that_of_the_finished_mechanism():
@@ -152,13 +154,15 @@ def test_peak_objective_lowers_the_peak():
 
 
 def test_bounds_of_small_sets_hold_for_the_designs_on_them():
-    search = SpringSearch(build(Problem.of(lee_chen(), span=2, radius=0.15)))
+    search = SpringSearch(Rms(build(Problem.of(lee_chen(), span=2, radius=0.15))), 2)
     for count in (1, 2):
         found = search.best(count)
-        assert found.bound is not None
-        assert found.value >= found.bound - 1e-9
-        every = itertools.combinations(range(len(search.reduced.blocks)), count)
-        assert found.bound == pytest.approx(min(search.bound(pairs) for pairs in every))
+        assert found is not None
+        bound = search.sets.least(count, tuple(found.parts.block[0].tolist()))
+        assert bound is not None
+        assert found.value >= bound - 1e-9
+        every = itertools.combinations(range(len(search.goal.reduced.blocks)), count)
+        assert bound == pytest.approx(min(search.sets.bound(pairs) for pairs in every))
 
 
 def test_regions_away_from_the_origin_are_respected():

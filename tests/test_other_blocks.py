@@ -21,6 +21,7 @@ from equipoise.model.arrays import Array
 from equipoise.model.errors import NoFourierForm
 from equipoise.synthesis.convex.blocks import Block, Cone
 from equipoise.synthesis.convex.least_squares_form import build
+from equipoise.synthesis.convex.peak import peak_poses
 from equipoise.synthesis.convex.semidefinite import least_rms
 from equipoise.synthesis.region import free_directions, project
 
@@ -171,10 +172,10 @@ def test_what_a_block_with_weight_leaves_under_each_load(samples):
     assert design.bound == pytest.approx(design.residual, rel=1e-5)  # one body's weights are one weight
 
 
-def fixed() -> tuple[eq.Problem, Array, Array, float]:
+def fixed(peak: bool = False) -> tuple[eq.Problem, Array, Array, float]:
     """A hinge within its range, its torque columns for the two extreme springs (poses, 2), its load and its unit."""
     hinge = replace(HINGE, joints=(replace(HINGE.joints[0], range=(-0.5, 1.0)),))
-    q = sample(Tree.of(hinge), 300)
+    q = peak_poses(Tree.of(hinge), 300, 0) if peak else sample(Tree.of(hinge), 300)
     spring = eq.Spring("one", "world", (0.1, 0, 0.4), "link2", (0.15, 0, 0), 1.0)
     shortest = float(Potential(hinge.with_springs([spring]))(q).path.min())
     block = FixedSpring(spring.p_a, "link2", spring.p_b, shortest)
@@ -197,7 +198,8 @@ def test_the_best_spring_between_fixed_points_is_that_of_nonnegative_least_squar
 
 
 def test_the_peak_too():
-    problem, columns, bare, _ = fixed()
+    """The worst pose is sought at the ends of the range too."""
+    problem, columns, bare, _ = fixed(peak=True)
     one = np.ones((len(bare), 1))
     rows, sides = np.vstack([np.hstack([columns, -one]), np.hstack([-columns, -one])]), np.concatenate([-bare, bare])
     least = linprog([0, 0, 1], rows, sides).fun

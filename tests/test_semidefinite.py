@@ -8,7 +8,7 @@ from robots import lee_chen, planar_arm, robot
 from equipoise.synthesis.convex import least_squares_form
 from equipoise.synthesis.convex.peak import Peak
 from equipoise.synthesis.convex.polish import Parts, residual
-from equipoise.synthesis.convex.semidefinite import least_rms
+from equipoise.synthesis.convex.semidefinite import least_rms, rms_program
 from equipoise.synthesis.convex.spring_block import smat
 from equipoise.synthesis.problem import Problem
 
@@ -90,7 +90,7 @@ def test_enlarged_is_the_problem_with_larger_regions():
 def test_peak_bound_holds_for_random_designs_and_is_reached():
     compressed = least_squares_form.build(Problem.of(lee_chen(), span=1, radius=0.15, samples=500, objective="peak"))
     peak = Peak.of(compressed)
-    bound = peak.bound().value
+    bound = peak.bound.value
     rng = np.random.default_rng(0)
     for _ in range(200):
         pair = rng.integers(len(compressed.blocks), size=(1, 3))
@@ -99,3 +99,22 @@ def test_peak_bound_holds_for_random_designs_and_is_reached():
     start = Parts(np.array([[0, 1, 2]]), np.full((1, 3), 100.0), np.full((1, 3, 6), 0.2))
     _, value = peak.polish(start)
     assert bound - 1e-9 <= value <= 1.3 * bound
+
+
+@pytest.mark.parametrize(("mechanism", "options"), CASES)
+def test_whether_a_value_is_reached_is_what_the_optimum_says(mechanism, options):
+    program = rms_program(least_squares_form.build(Problem.of(mechanism, radius=0.15, **options)))
+    least = program.solve().value
+    for value in (1e-6, 0.5 * least, 0.999 * least, 1.001 * least + 1e-8, 2.0):
+        assert program.reaches(value) is (least < value)
+
+
+def test_prices_pull_the_optimum_towards_fewer_parts():
+    program = rms_program(least_squares_form.build(Problem.of(lee_chen(), span=2, radius=0.15)))
+    blocks = program.reduced.blocks
+    free = program.priced([np.zeros(block.unknowns) for block in blocks])
+    dear = program.priced([0.1 * block.amount for block in blocks])
+    amount = [sum(block.amount @ own for block, own in zip(blocks, x, strict=True)) for x in (free, dear)]
+    assert amount[1] < 0.5 * amount[0]
+    again = program.priced([np.zeros(block.unknowns) for block in blocks])
+    assert [own.tolist() for own in again] == [own.tolist() for own in free]

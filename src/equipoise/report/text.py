@@ -107,7 +107,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     share = design.residual / design.unbalanced
     which = "all joints" if design.joints is None else ", ".join(design.joints)
     yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
-    where = "all configurations" if design.averaged else f"{design.samples:,} random poses"
+    ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
+    where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
     yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
     floor = EXACT * design.unbalanced
     yield Text(f"  residual    {torque(design.residual, floor)} N m  = {percent(share)} of unbalanced")
@@ -116,6 +117,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         gap = f"gap {percent(design.certified_gap)} of unbalanced"
         why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
         yield Text(f"  bound       {least}: {why}; {gap}")
+    if design.by_chance:
+        yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")
     for load in design.loads if len(design.loads) > 1 else ():
         share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
         yield Text(f"  {load.name:<11} {torque(load.residual, floor)} N m  = {share} of {load.unbalanced:.5g} N m")

@@ -46,7 +46,8 @@ class Infeasible:
 
     Attributes:
         least: [N m] root mean square torque that every choice of springs leaves.
-        far: the same with regions ten times as large, which tells whether the pairs or the regions are to blame.
+        far: the same with regions ten times as large, 0 where that is exact or not known: it tells whether the pairs
+            or the regions are to blame.
         remedies: of the nearest other pairs, those any one of which would make exact balance possible.
         tried: how many other pairs that was.
     """
@@ -54,7 +55,7 @@ class Infeasible:
     pairs: tuple[tuple[str, ...], ...]
     least: float
     far: float
-    remedies: tuple[tuple[str, str], ...]
+    remedies: tuple[tuple[str, ...], ...]
     tried: int
 
     def __str__(self) -> str:
@@ -65,7 +66,7 @@ class Infeasible:
             text += f" ({self.far:.4g} N m rms even with attachments ten times as far out)"
         if self.remedies:
             text += "; adding any one of these pairs makes it feasible: "
-            text += ", ".join(f"{a}:{b}" for a, b in self.remedies)
+            text += ", ".join(":".join(pair) for pair in self.remedies)
         elif self.tried:
             text += f"; none of the {self.tried} nearest other pairs makes it feasible by itself"
         return text
@@ -91,6 +92,7 @@ class Design(Shown):
         loads: what is left under each load; the numbers above are for all together. `balance` is about the mechanism
             as it is.
         front: the best design for each number of springs, when it was asked for.
+        by_chance: whether its springs come from random starts, the last resort where the program gives none as good.
         ordinary: what was lost when the springs got a free length, or room.
         judged: the verdict on `mechanism`, where making the design took one; of any other it says nothing.
     """
@@ -109,6 +111,7 @@ class Design(Shown):
     infeasible: Infeasible | None = None
     loads: tuple[LoadResidual, ...] = ()
     front: tuple[FrontRow, ...] = ()
+    by_chance: bool = False
     ordinary: Ordinary | None = None
     judged: Balance | None = field(default=None, repr=False, compare=False)
 
@@ -220,6 +223,7 @@ class Design(Shown):
                 }
                 for row in self.front
             ],
+            "by_chance": self.by_chance,
             "free_parameters": dict(self.free_parameters),
             "free_length": None if self.ordinary is None else self.ordinary.to_dict(),
             "balance": self.balance.to_dict(),

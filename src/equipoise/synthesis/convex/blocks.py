@@ -2,13 +2,14 @@
 
 Every torque is linear in the unknowns x of the blocks, and each block's x lies in a cone. The cone is spanned by
 *parts*, single elements that can be built: a part is an amount k >= 0 times `Block.part` of its shape u, a point of
-[-1, 1]^shape. The program bounds what any number of parts can do; the search looks for few of them.
+[-1, 1]^shape. The program bounds what any number of parts can do; its optimum is split into few of them.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from functools import cached_property
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -19,6 +20,8 @@ from ...kinematics import Poses, Tree, Velocities
 from ...model.arrays import Array, frozen
 from ...model.mechanism import Mechanism
 from ..region import RIM
+
+FITTED = 5  # steps that fit a shape to unknowns; one does where parts are linear in their shape
 
 
 @frozen
@@ -98,6 +101,29 @@ class Block(ABC):
     def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
         """The mechanism with `k` units of a part of shape u (shape,)."""
 
+    @cached_property
+    def amount(self) -> Array:
+        """(unknowns,) the linear form that is 1 for one unit of a part, whatever its shape."""
+        u = np.vstack([np.zeros(self.shape), np.eye(self.shape), -np.eye(self.shape)])
+        return np.asarray(np.linalg.lstsq(self.part(u), np.ones(len(u)), rcond=None)[0], float)
+
+    def weights(self, x: Array, eps: float) -> Array:
+        """(unknowns,) the slope at x of a concave count of its parts: of the logarithm of the amount plus eps."""
+        return self.amount / (self.amount @ x + eps)
+
+    def split(self, x: Array, least: float) -> tuple[Array, Array]:
+        """The few parts that add up to about x: amounts (n,) and shapes (n, shape), without amounts below `least`.
+
+        One where a block does not know better, fitted to x by Gauss-Newton steps.
+        """
+        k, u = float(self.amount @ x), np.zeros((1, self.shape))
+        if k < least:
+            return np.zeros(0), u[:0]
+        for _ in range(FITTED):
+            off = self.part(u)[0] - x / k
+            u = self.project(u - np.linalg.lstsq(self.slopes(u)[0].T, off, rcond=None)[0])
+        return np.array([k]), u
+
     def project(self, u: Array) -> Array:
         """The nearest possible shapes, u (N, shape)."""
         return np.clip(u, -1, 1)
@@ -105,6 +131,13 @@ class Block(ABC):
     def free(self, u: Array, gradient: Array) -> Array:
         """(N, shape, shape) projectors onto the steps that lead to possible shapes, downhill of `gradient`."""
         return np.where((np.abs(u) >= RIM) & (gradient * u < 0), 0.0, 1.0)[..., None] * np.eye(self.shape)
+
+    def within(self, u: Array) -> tuple[Array, Array]:
+        """(rows, shape) A and (rows,) b of one shape u (shape,): a step s with ``A s <= b`` stays possible, nearly.
+
+        Beside -1 <= u + s <= 1, and to first order in s.
+        """
+        return np.zeros((0, self.shape)), np.zeros(0)
 
     def cost(self, energy: Array) -> Array:
         """(unknowns,) [J] what equal designs should have little of, given the mean energy (unknowns,) [J]."""

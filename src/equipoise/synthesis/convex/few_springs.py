@@ -1,166 +1,220 @@
-"""Few parts: which blocks, such as pairs of bodies, and the best parts of them, such as springs.
+"""Few parts, such as springs, out of the program's own optimum, and the best set for every number of them.
 
-The convex bound of a set of blocks bounds every design on it, so sets are tried in the order of their bounds; on each,
-many random starts are polished under the true constraints.
+A price on parts thins the optimum out (`reweighted`); it is split into parts, and these are polished under the true
+constraints. Sets with fewer parts come from higher prices, and from taking parts away one by one. Random starts are the
+last resort, where none of these comes near the bound.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations, combinations_with_replacement, islice
-from math import comb
+from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 
-from ...model.progress import Progress
-from .least_squares_form import LeastSquaresForm
-from .polish import STALL, Parts, best_amounts, polish, shape
-from .semidefinite import Bound, least_rms
+from ...model.errors import EquipoiseError
+from ...model.progress import Progress, silent
+from .block_sets import FEASIBLE, BlockSets
+from .goal import Goal, Rms, rms
+from .polish import Parts
+from .random_starts import random_parts
+from .reweighted import few_parts
 
 ROUNDING_SHARE = 1e-11  # share of the unbalanced torque that is only rounding here; the certificate has the last word
-FEASIBLE = 1e-6  # a convex bound below this share is zero within the solver's tolerance
-EXHAUSTIVE = 500  # sets of blocks up to which every one gets its bound
-BEAM = 6  # otherwise only the best so many sets are extended by one more block
-SETS = 10  # sets of blocks polished for each number of parts
-STARTS = 48  # random starts on each; the best quarter is polished to the end
-SHORT = 30  # iterations for all starts
-MORE = 128  # starts where an exact design may exist and was not found, on
-MANY = 200  # sets over the square of the number of parts, which is how their cost grows
-NEARLY = 1e-3  # relative: designs this close to the best of them count as equal
-NOT_NEEDED = 1e-6  # relative: a part that improves less is not needed
-CLOSE = 1.001  # times the bound: as good as it
-SPLITS = 6  # ways to distribute the parts over the blocks of a set
+NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
+CLOSE = 1e-3  # relative: as good as the bound
+NEARLY = 1e-5  # relative: sets this close to the best of them count as equal
+PRICES = (1e-2, 1e-3, 3e-4, 3e-2, 3e-3)  # of a part
+LOW = 1e-3  # the price on few blocks
+ROUNDS = 3  # of all prices with other first weights, while the bound is not reached
+BEAM = 3  # sets of each size that parts are taken away from
+LARGEST = 12  # parts of a set that is looked at
+SETS = 24  # sets of blocks for random starts
+FEW = 5  # parts: of sets with more only the best gets smaller, without starts around it
+AROUND = 3  # starts around each set that a part was taken away from
+SCATTER = 0.3  # by which their shapes and the logarithms of their amounts scatter
 
 
 @dataclass(frozen=True)
 class SpringSet:
-    """The best design found with at most `count` parts.
+    """A set of parts (batch of 1) and what it leaves.
 
     Attributes:
-        parts: one set (batch of 1).
-        value: root mean square torque as a share of the unbalanced one.
-        bound: no design with `count` parts leaves less; None where not every set of blocks was bounded.
+        value: what the goal is about, as a share of its unit.
+        exact: zero to rounding at every pose.
+        cost: what equal designs should have little of, see `Parts.cost`.
+        by_chance: it comes from a random start.
     """
 
-    count: int
     parts: Parts
     value: float
-    bound: float | None
+    exact: bool
+    cost: float
+    by_chance: bool = False
 
     @property
-    def exact(self) -> bool:
-        """Zero to rounding."""
-        return self.value < ROUNDING_SHARE
+    def count(self) -> int:
+        return self.parts.k.shape[1]
 
 
 @dataclass
 class SpringSearch:
-    """The search over sets of blocks of one problem. Remembers the bound of every set, and the sets by size."""
+    """The search for one goal.
 
-    reduced: LeastSquaresForm
+    Attributes:
+        most: parts that are wanted, at most.
+        found: the best sets of each number of parts, once it was `explored`.
+        seen: the blocks on which the program by itself was solved; tried: the prices at which it was on all.
+    """
+
+    goal: Goal
+    most: int
     seed: int = 0
-    progress: Progress | None = None
-    bounds: dict[tuple[int, ...], Bound] = field(default_factory=dict)
-    ordered: dict[int, tuple[list[tuple[int, ...]], bool]] = field(default_factory=dict)
+    progress: Progress = silent
+    found: dict[int, list[SpringSet]] = field(default_factory=dict)
+    seen: set[tuple[int, ...]] = field(default_factory=set)
+    tried: set[tuple[int, int]] = field(default_factory=set)
+    explored: bool = False
 
-    def bound(self, blocks: tuple[int, ...]) -> float:
-        """The convex bound of the blocks with these numbers."""
-        if blocks not in self.bounds:
-            self.bounds[blocks] = least_rms(self.reduced.on(blocks))
-        return self.bounds[blocks].value
+    @cached_property
+    def sets(self) -> BlockSets:
+        return BlockSets(self.goal.reduced, self.progress)
 
-    @property
+    @cached_property
     def floor(self) -> float:
-        """The convex bound of all blocks together."""
-        return self.bound(tuple(range(len(self.reduced.blocks))))
+        """The bound, 0 where the solver found none: nothing leaves less than nothing."""
+        try:
+            return self.goal.bound.value
+        except EquipoiseError:
+            return 0.0
 
-    def sets(self, size: int) -> tuple[list[tuple[int, ...]], bool]:
-        """Sets of `size` blocks, best bound first, and whether every one was looked at."""
-        blocks = range(len(self.reduced.blocks))
-        size = min(size, len(blocks))
-        if size in self.ordered:
-            return self.ordered[size]
-        every = comb(len(blocks), size) <= EXHAUSTIVE
-        if every:
-            candidates = list(combinations(blocks, size))
-        else:
-            roots = self.sets(size - 1)[0][:BEAM]
-            candidates = sorted({tuple(sorted({*root, b})) for root in roots for b in blocks if b not in root})
-        for i, candidate in enumerate(candidates):
-            self.bound(candidate)
-            self._report(f"bounding sets of pairs, {size} at a time", (i + 1) / len(candidates))
-        self.ordered[size] = sorted(candidates, key=lambda c: (max(self.bound(c), FEASIBLE), c)), every
-        return self.ordered[size]
+    def best(self, most: int) -> SpringSet | None:
+        """The best set with at most so many parts, of equal ones the one with the fewest; None where there is none."""
+        if not self.explored:
+            self.explored = True
+            self._explore()
+        return self._best_of(most)
 
-    def best(self, count: int) -> SpringSet:
-        """The best design found with at most `count` parts."""
-        sets, every = self.sets(count)
-        bound = self.bound(sets[0]) if every else None
-        smaller = [s for size in range(1, min(count, len(self.reduced.blocks))) for s in self.sets(size)[0][:SETS]]
-        promising = sorted([*sets[:SETS], *smaller], key=lambda c: (max(self.bound(c), FEASIBLE), len(c)))[: 2 * SETS]
-        best = self._try(promising, count, bound, STARTS)
-        if not best.exact:
-            # exact designs may exist on any set whose bound is zero, and small regions hide them from most starts
-            tried = [s for size in range(1, count + 1) for s in self.sets(size)[0]]
-            for chosen in [s for s in dict.fromkeys(tried) if self.bound(s) < FEASIBLE][: MANY // count**2 + 1]:
-                found = self._polished(chosen, count, bound, MORE)
-                best = found if self._better(found, best) else best
-                self._report(f"looking for {count} exact spring{'s' * (count > 1)}", 0.0)
-                if best.exact:
+    def _best_of(self, most: int) -> SpringSet | None:
+        """The best of those found so far."""
+        sets = [one for count in sorted(self.found) if count <= most for one in self.found[count]]
+        exact = [one for one in sets if one.exact]
+        least = min((one.value for one in sets), default=0.0)
+        good = exact or [one for one in sets if one.value <= least * (1 + NEARLY)]
+        return min(good, key=lambda one: (one.count, one.cost), default=None)
+
+    def front(self) -> Iterator[SpringSet]:
+        """The best sets with at most 1, 2, ... parts, until exact, or as good as the bound, or `most`."""
+        for count in range(1, self.most + 1):
+            found = self.best(count)
+            if found is not None:
+                yield found
+                if found.exact or (self.floor >= FEASIBLE and found.value <= self.floor * (1 + CLOSE)):
                     break
-        return best
 
-    def front(self, most: int) -> Iterator[SpringSet]:
-        """The best designs found with at most 1, 2, ... parts, until exact, or as good as the bound, or `most`."""
-        floor = self.floor
-        last = self.best(1)
-        yield last
-        while last.count < most and not last.exact and (floor <= FEASIBLE or last.value > CLOSE * floor):
-            found = self.best(last.count + 1)
-            kept = found if self._better(found, last) else last
-            last = replace(kept, count=found.count, bound=found.bound)
-            yield last
+    def few(self) -> SpringSet | None:
+        """The fewest parts found that are enough; where the bound is not zero, without looking further than to them."""
+        if self.floor >= FEASIBLE and not self.explored:
+            for number in range(len(PRICES)):
+                self._at_price(0, number)
+                if self._fewest(self.most):
+                    break
+            self._shrink()
+        if not (self.explored or self._fewest(self.most)):
+            self.best(self.most)
+        return self._best_of(self._fewest(self.most))
 
-    def pruned(self, found: SpringSet) -> SpringSet:
-        """The same without the parts that are not needed: none can go without a loss."""
-        count = found.parts.k.shape[1]
-        for i in range(count if count > 1 else 0):
-            parts, value = polish(self.reduced, found.parts.without(i))
-            less = replace(found, parts=parts, value=float(value[0]))
-            if less.exact if found.exact else less.value <= found.value * (1 + NOT_NEEDED):
-                return self.pruned(less)
-        return found
+    def enough(self, found: SpringSet) -> bool:
+        """Whether more parts are not worth it: it is exact, or near a bound that says that none are."""
+        return found.exact or (self.floor >= FEASIBLE and found.value <= self.floor + NEAR)
 
-    def _try(self, sets: list[tuple[int, ...]], count: int, bound: float | None, starts: int) -> SpringSet:
-        best = self._polished(sets[0], count, bound, starts)
-        for i, chosen in enumerate(sets[1:], 2):
-            if self.bound(chosen) > best.value:
-                break  # no design on this set, nor on any later one, can be better
-            found = self._polished(chosen, count, bound, starts)
-            best = found if self._better(found, best) else best
-            self._report(f"polishing {count} spring{'s' * (count > 1)}", i / len(sets))
-        return best
+    def _explore(self) -> None:
+        for turn in range(ROUNDS):
+            for number in range(len(PRICES)):
+                self._at_price(turn, number)
+            if self._fewest(LARGEST):
+                break
+        self._shrink()
+        if self.floor < FEASIBLE:  # exact with fewer, perhaps; above it the bound has been reached
+            most = min(self.most, (self._fewest(LARGEST) or LARGEST) - 1)
+            while most and self._on_fewer(most):
+                most -= 1
+        hope = self.floor < FEASIBLE or (self.floor < 1 - FEASIBLE and not self._fewest(LARGEST))
+        if hope and not self._fewest(self.most):
+            self._by_chance(self.most)
 
-    def _polished(self, chosen: tuple[int, ...], count: int, bound: float | None, starts: int) -> SpringSet:
-        reduced = self.reduced.on(chosen)
-        rng = np.random.default_rng([self.seed, count, *chosen])
-        spare = count - len(chosen)
-        splits = list(islice(combinations_with_replacement(range(len(chosen)), spare), SPLITS))
-        local = np.repeat([[*range(len(chosen)), *extra] for extra in splits], starts, axis=0)
-        start = Parts.at(reduced, local, np.ones(local.shape), rng.uniform(-1, 1, (*local.shape, shape(reduced))))
-        parts, value = polish(reduced, best_amounts(reduced, start), SHORT)
-        parts, value = polish(reduced, parts[np.argsort(value)[: len(parts) // 4 + 8]])
-        good = np.flatnonzero(value <= max(value.min() * (1 + NEARLY), 10 * STALL))
-        winner = good[parts.cost(reduced)[good].argmin()]  # among equals, the one that stores least
-        best = parts[winner : winner + 1]
-        return SpringSet(count, replace(best, block=np.array(chosen)[best.block]), float(value[winner]), bound)
+    def _fewest(self, most: int) -> int:
+        """The fewest parts that are enough; 0 where no set of at most so many is."""
+        every = (count for count, sets in self.found.items() if count <= most and any(map(self.enough, sets)))
+        return min(every, default=0)
 
-    def _better(self, one: SpringSet, other: SpringSet) -> bool:
-        if one.exact and other.exact:
-            return bool(one.parts.cost(self.reduced)[0] < other.parts.cost(self.reduced)[0])
-        return one.value < other.value
+    def _at_price(self, turn: int, number: int) -> None:
+        if (turn, number) not in self.tried:
+            self.tried.add((turn, number))
+            self._by_program(self.goal, PRICES[number], [turn, number])
+            self.progress("choosing springs", (number + 1) / len(PRICES))
 
-    def _report(self, what: str, done: float) -> None:
-        if self.progress:
-            self.progress(what, done)
+    def _by_program(self, goal: Goal, price: float, seed: Sequence[int]) -> None:
+        try:
+            parts = few_parts(goal, price, np.random.default_rng([self.seed, *seed]))
+        except EquipoiseError:  # at another price it may not stop
+            return
+        if parts is not None and parts.k.shape[1] <= LARGEST:
+            self._offer(goal, parts)
+
+    def _on_fewer(self, count: int) -> bool:
+        """The program on sets of few blocks that may be enough; whether one was, with so many parts."""
+        for size in range(1, count + 1):
+            for chosen in self.sets.of_size(size)[0]:
+                if self.sets.bound(chosen) > max(self.floor, FEASIBLE):
+                    break
+                if chosen not in self.seen:
+                    self.seen.add(chosen)
+                    self._by_program(self.goal.on(chosen), LOW, chosen)
+                    if self._fewest(count):
+                        return True
+        return False
+
+    def _by_chance(self, count: int) -> None:
+        """Random starts, until so many parts are enough."""
+        sets = self.sets.promising(count)[:SETS]
+        for i, chosen in enumerate(sets):
+            if isinstance(self.goal, Rms) and self.sets.bound(chosen) > self._least(count):
+                break  # no set of parts on these blocks, nor on any later ones, can be better
+            self._offer(self.goal, random_parts(self.goal.reduced, chosen, count, self.seed), by_chance=True)
+            self.progress("choosing springs from random starts", (i + 1) / len(sets))
+            if self._fewest(count):
+                break
+
+    def _least(self, most: int) -> float:
+        return min((one.value for count, sets in self.found.items() if count <= most for one in sets), default=np.inf)
+
+    def _offer(self, goal: Goal, start: Parts, by_chance: bool = False) -> None:
+        """Take what starts, all of one size, are polished to."""
+        parts, values = goal.improve(start)
+        exact = rms(goal.reduced, parts) < ROUNDING_SHARE
+        costs = parts.cost(goal.reduced)
+        sets = self.found.setdefault(parts.k.shape[1], [])
+        for i in range(len(parts)):
+            own = replace(parts[i : i + 1], block=goal.numbers[parts.block[i : i + 1]])
+            sets.append(SpringSet(own, float(values[i]), bool(exact[i]), float(costs[i]), by_chance))
+        sets.sort(key=lambda one: (not one.exact, one.cost if one.exact else one.value))
+        del sets[BEAM:]
+
+    def _shrink(self) -> None:
+        """Take parts away one by one, down to one, and blocks, on which the program is solved again."""
+        rng = np.random.default_rng(self.seed)
+        for count in range(max(self.found, default=1), 1, -1):
+            sets = self.found.get(count, [])[: BEAM if count <= FEW else 1]
+            for places in (tuple(np.unique(one.parts.block).tolist()) for one in sets):
+                for chosen in combinations(places, len(places) - 1):
+                    if chosen and chosen not in self.seen:
+                        self.seen.add(chosen)
+                        self._by_program(self.goal.on(chosen), LOW, chosen)
+            if sets:
+                less = Parts.joined([one.parts.without(i) for one in sets for i in range(count)])
+                around = [less.scattered(self.goal.reduced, SCATTER, rng) for _ in range(AROUND if count <= FEW else 0)]
+                self._offer(self.goal, Parts.joined([less, *around]))
+            self.progress("taking springs away", 1 / count)

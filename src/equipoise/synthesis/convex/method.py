@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
+from warnings import warn
 
 import numpy as np
 
 from ...balance import check
-from ...model.errors import EquipoiseError, InfeasibleError, InputError
+from ...model.errors import EquipoiseError, EquipoiseWarning, InfeasibleError, InputError
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
+from ...model.progress import silent
 from ...model.validate import whole_number
-from ..design import Design, Infeasible
+from ..design import Design, FrontRow, Infeasible
 from ..load import OWN
 from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
-from .candidates import Candidates
-from .few_springs import FEASIBLE, ROUNDING_SHARE, SpringSearch, SpringSet
+from .block_sets import FEASIBLE
+from .candidates import front_row, load_residuals, with_parts
+from .few_springs import ROUNDING_SHARE, SpringSearch, SpringSet
+from .goal import Goal, Rms
 from .least_squares_form import LeastSquaresForm, build
-from .semidefinite import least_rms
+from .peak import Peak
+from .semidefinite import least_rms, rms_program
 
 ROUNDING = 1e-13
 SPRINGS_TRIED = 8  # springs tried when no number is given
-NEAR = 0.01  # of the unbalanced torque: close enough to the bound to stop adding springs
 FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
 REMEDIES = 24  # other pairs tried when exact balance is infeasible
+SINGLY = 5  # of them that are tried one by one, where they help all together
 FEW = 300  # poses that tell whether exact balance is possible
 
 
@@ -76,30 +82,33 @@ def solve(problem: Problem, options: SolverOptions) -> Design:
         whole_number("springs", options.springs, 1)
     whole_number("seed", options.seed, 0)
     reduced = _worth_solving(build(problem, options.progress))
-    search = SpringSearch(reduced, options.seed, options.progress)
-    bound = search.floor
-    infeasible = None if bound < FEASIBLE else _infeasible(reduced, bound)
+    goal = Peak.of(reduced) if problem.objective == "peak" else Rms(reduced)
+    search = SpringSearch(goal, options.springs or SPRINGS_TRIED, options.seed, options.progress or silent)
+    bound = _bound(goal)
+    least = bound if isinstance(goal, Rms) else _bound(Rms(reduced))  # exact or not: the mean square tells best
+    infeasible = None if least is None or least < FEASIBLE else _infeasible(reduced, least)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
-    found, tried = _found(search, options.springs, bound, options.front)
-    judge = Candidates(reduced, 0.0 if infeasible is None else bound)
-    best = judge(search.pruned(found))
+    found = _found(search, options.springs is None)
     averaged = reduced.averaged and problem.objective == "rms"
+    if bound is not None:
+        bound = min(0.0 if infeasible is None else bound, found.value) * goal.unit
     design = Design(
-        mechanism=best.mechanism,
+        mechanism=with_parts(reduced, found.parts),
         method="convex",
         objective=problem.objective,
         joints=problem.joints,
-        residual=best.value * judge.unit,
-        unbalanced=judge.unit,
-        bound=min(judge.least, best.value) * judge.unit,  # equal but for rounding where the bound is reached
+        residual=found.value * goal.unit,
+        unbalanced=goal.unit,
+        bound=bound,
         averaged=averaged,
         samples=None if averaged else problem.count,
         free_parameters=_free(problem, options),
-        exact_feasible=infeasible is None,
+        exact_feasible=None if least is None else infeasible is None,
         infeasible=infeasible,
-        loads=judge.of_loads(best),
-        front=tuple(judge.row(row) for row in tried) if options.front else (),
+        loads=load_residuals(goal, found.parts),
+        front=tuple(_rows(search)) if options.front else (),
+        by_chance=found.by_chance,
     ).with_provenance()
     if options.exact and not _exact(design, problem):
         raise InfeasibleError(
@@ -136,31 +145,39 @@ def _worth_solving(reduced: LeastSquaresForm) -> LeastSquaresForm:
     return reduced.on(reduced.useful)
 
 
-def _found(search: SpringSearch, springs: int | None, bound: float, every: bool) -> tuple[SpringSet, list[SpringSet]]:
-    """The design to deliver, and what was tried: with `every`, also what comes after it."""
-    tried: list[SpringSet] = []
-    enough: SpringSet | None = None
-    for found in search.front(springs or SPRINGS_TRIED):
-        tried.append(found)
-        near = springs is None and bound >= FEASIBLE and found.value <= bound + NEAR
-        if enough is None and (found.exact or near):
-            enough = found
-            if not every:
-                break
-    best = enough or tried[-1]
-    if best.value > 1 - ROUNDING_SHARE:
+def _bound(goal: Goal) -> float | None:
+    """What no parts can undercut, as a share; None, and a warning, where the solver finds nothing."""
+    try:
+        return goal.bound.value
+    except EquipoiseError as error:
+        warn(f"{error}; there is no bound, and springs come from random starts", EquipoiseWarning, stacklevel=2)
+        return None
+
+
+def _found(search: SpringSearch, few: bool) -> SpringSet:
+    """The design to deliver: the best, or if `few` one that is good enough."""
+    best = (search.few() if few else None) or search.best(search.most)
+    if best is None or best.value > 1 - ROUNDING_SHARE:
         raise InfeasibleError("no springs on these pairs lower the torque of the joints that count")
-    if bound > best.value + FEASIBLE:
+    if search.floor > best.value + FEASIBLE:
         raise EquipoiseError(
-            f"the convex solver's bound ({bound:.3g} of the unbalanced torque) contradicts a design that leaves "
+            f"the convex solver's bound ({search.floor:.3g} of the unbalanced torque) contradicts a design that leaves "
             f"{best.value:.3g}: the problem is badly scaled; try a larger radius"
         )
-    return best, tried
+    return best
+
+
+def _rows(search: SpringSearch) -> Iterator[FrontRow]:
+    """The lines of the front."""
+    for count, found in enumerate(search.front(), 1):
+        bound = None  # the bounds of few parts are bounds of the mean square
+        if isinstance(search.goal, Rms):
+            bound = search.sets.least(count, tuple(found.parts.block[0].tolist()))
+        yield front_row(search.goal, count, found, bound)
 
 
 def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
     problem = reduced.problem
-    far = least_rms(reduced.enlarged(FAR)).value
     own = tuple(block.place for block in reduced.blocks)
     present = {frozenset(pair) for pair in own}
     mounts = Mounts.of(problem.judged)
@@ -172,11 +189,31 @@ def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
         wider = replace(wider, samples=FEW)
     wide = build(wider)
     number = {block.place: i for i, block in enumerate(wide.blocks)}
-    stay = [number[place] for place in own]
-    remedies = [p for p in missing if least_rms(wide.on([*stay, number[p]])).value < FEASIBLE]
     unit = reduced.unbalanced
-    far = far * unit if far >= FEASIBLE else 0.0
-    return Infeasible(own, bound * unit, far, tuple(remedies), len(missing))
+    try:
+        far = least_rms(reduced.enlarged(FAR)).value
+    except EquipoiseError:
+        far = 0.0  # not known
+    remedies = _remedies(wide, [number[place] for place in own], [number[pair] for pair in missing])
+    places = tuple(wide.blocks[i].place for i in remedies)
+    return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing))
+
+
+def _feasible(reduced: LeastSquaresForm) -> bool:
+    """Whether exact balance is possible as far as the solver can tell."""
+    try:
+        return rms_program(reduced).reaches(FEASIBLE)
+    except EquipoiseError:
+        return False
+
+
+def _remedies(wide: LeastSquaresForm, stay: list[int], others: list[int]) -> list[int]:
+    """Those of the others any one of which makes exact balance possible: none where all together do not."""
+    if not others or not _feasible(wide.on([*stay, *others])):
+        return []
+    size = len(others) // 2 if len(others) > SINGLY else 1
+    groups = [others[i : i + size] for i in range(0, len(others), size)] if len(others) > 1 else []
+    return [one for group in groups for one in _remedies(wide, stay, group)] if groups else others
 
 
 def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:

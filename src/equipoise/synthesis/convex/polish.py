@@ -7,7 +7,7 @@ spend its time in overhead. Unknowns per part: the logarithm of its amount, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -49,6 +49,11 @@ class Parts:
     def __getitem__(self, chosen: Integers | slice) -> Parts:
         return Parts(self.block[chosen], self.k[chosen], self.u[chosen])
 
+    @staticmethod
+    def joined(batches: Sequence[Parts]) -> Parts:
+        """One batch of sets of the same number of parts."""
+        return Parts(*(np.concatenate([getattr(own, name) for own in batches]) for name in ("block", "k", "u")))
+
     def without(self, i: int) -> Parts:
         """The same without the i-th part of every set."""
         rest = [j for j in range(self.k.shape[1]) if j != i]
@@ -57,6 +62,11 @@ class Parts:
     def moved(self, reduced: LeastSquaresForm, step: Array) -> Parts:
         """The sets after a `step` (batch, parts, 1 + shape): log amount, then shape, back to where it is possible."""
         return Parts.at(reduced, self.block, self.k * np.exp(step[..., 0]), self.u + step[..., 1:])
+
+    def scattered(self, reduced: LeastSquaresForm, size: float, rng: np.random.Generator) -> Parts:
+        """Sets around these: amounts by factors, shapes by steps of about `size`."""
+        steps = rng.normal(0.0, size, (*self.k.shape, 1 + self.u.shape[2]))
+        return self.moved(reduced, steps)
 
     def unknowns(self, reduced: LeastSquaresForm) -> list[Array]:
         """What the parts of a set (a batch of one) add up to, for each block (unknowns,)."""

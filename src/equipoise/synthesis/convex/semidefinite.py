@@ -6,7 +6,8 @@ is a lower bound for every design on these blocks.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import cached_property
 from math import isqrt
 from typing import Any
 
@@ -17,6 +18,8 @@ from ...model.errors import EquipoiseError
 from .least_squares_form import LeastSquaresForm
 
 LINEAR = ("zero", "nonnegative")
+FINE, COARSE = 1e-9, 1e-6  # tolerances of a bound, and of where parts are looked for
+SAFE = 10.0  # times what the solver still violates: so far its optimum may be off
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
 
@@ -41,6 +44,7 @@ class Program:
     """
 
     def __init__(self, reduced: LeastSquaresForm, extra: int) -> None:
+        self.reduced = reduced
         self.scale = [1 / max(float(np.linalg.norm(own, axis=(0, 1))), 1e-300) for own in reduced.columns]
         self.starts = np.cumsum([0, *(block.unknowns for block in reduced.blocks)]).tolist()
         self.width = self.starts[-1] + extra
@@ -81,43 +85,91 @@ class Program:
         Raises:
             EquipoiseError: the solver stopped far from the optimum.
         """
+        solution = self._compiled(FINE).solve()
+        # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay safe
+        violation = self._violation(solution)
+        least = min(solution.obj_val, solution.obj_val_dual) - SAFE * violation
+        return Bound(max(0.0, least), self._unknowns(solution))
+
+    def priced(self, weights: Sequence[Array]) -> tuple[Array, ...]:
+        """The unknowns in the program's units that minimise the last unknown plus weights times those of each block.
+
+        The program is compiled the first time: other weights cost no more than the iterations.
+
+        Raises:
+            EquipoiseError: the solver stopped far from the optimum.
+        """
+        self._coarse.update(q=np.concatenate([*weights, np.zeros(self.width - self.starts[-1] - 1), [1.0]]))
+        solution = self._coarse.solve()
+        self._violation(solution)
+        return tuple(own / scale for own, scale in zip(self._unknowns(solution), self.scale, strict=True))
+
+    def reaches(self, value: float) -> bool:
+        """Whether the optimum is below `value`; it takes fewer iterations than the optimum itself.
+
+        Raises:
+            EquipoiseError: the solver stopped before that was clear.
+        """
+        solver = self._compiled(FINE)
+        solver.set_termination_callback(
+            lambda now: now.cost_dual > value + SAFE * max(now.res_primal, now.res_dual, now.gap_abs)
+        )
+        solution = solver.solve()
+        if str(solution.status) != "CallbackTerminated":
+            self._violation(solution)
+        return min(solution.obj_val, solution.obj_val_dual) < value
+
+    def _violation(self, solution: Any) -> float:
+        violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
+        if not violation < STALLED:
+            raise EquipoiseError(
+                f"the convex solver stopped with '{solution.status}': the problem is badly scaled; try a larger radius"
+            )
+        return violation
+
+    def _unknowns(self, solution: Any) -> tuple[Array, ...]:
+        parts = np.split(np.array(solution.x)[: self.starts[-1]], self.starts[1:-1])
+        return tuple(own * scale for own, scale in zip(parts, self.scale, strict=True))
+
+    @cached_property
+    def _coarse(self) -> Any:
+        return self._compiled(COARSE)
+
+    def _compiled(self, tolerance: float) -> Any:
         from scipy import sparse
 
         clarabel = _solver()
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+        settings.presolve_enable = settings.chordal_decomposition_enable = False  # they forbid another objective
         n, (i, j, values) = self.width, (np.concatenate(part) for part in zip(*self.entries, strict=True))
         A, b = sparse.csc_matrix((values, (i, j)), (self.height, n)), np.concatenate(self.b)
         objective = np.append(np.zeros(n - 1), 1.0)
-        solution = clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, self.cones, settings).solve()
-        # close to the optimum the solver may stall: then what it violates is taken off the bound, to stay safe
-        violation = 0.0 if str(solution.status) == "Solved" else max(solution.r_prim, solution.r_dual)
-        if not violation < STALLED:
-            raise EquipoiseError(
-                f"the convex solver stopped with '{solution.status}': the problem is badly scaled; try a larger radius"
-            )
-        parts = np.split(np.array(solution.x)[: self.starts[-1]], self.starts[1:-1])
-        x = tuple(own * scale for own, scale in zip(parts, self.scale, strict=True))
-        return Bound(max(0.0, min(solution.obj_val, solution.obj_val_dual) - 10 * violation), x)
+        return clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, self.cones, settings)
 
 
 def least_rms(reduced: LeastSquaresForm) -> Bound:
     """The bound for the root mean square torque of all joints together (rest included)."""
+    return rms_program(reduced).solve()
+
+
+def rms_program(reduced: LeastSquaresForm) -> Program:
+    """The program whose optimum is the least root mean square torque."""
     program = Program(reduced, extra=1)
     t = program.width - 1
     norm = np.concatenate([[0.0], reduced.d, [reduced.rest]])
     columns = [(1, start, -own) for _, start, own in program.columns]
     program.add("second order", norm, [*columns, (0, t, -np.eye(1))])
-    return program.solve()
+    return program
 
 
-def least_peak(reduced: LeastSquaresForm, L: Array, load: Array) -> Bound:
-    """The bound for the largest of the torques ``|L w + load|`` with ``w = reduced.times(x)``.
+def peak_program(reduced: LeastSquaresForm, L: Array, load: Array) -> Program:
+    """The program whose optimum is the least of the largest torques ``|L w + load|`` with ``w = reduced.times(x)``.
 
     Args:
-        L: (rows, len(w)), load: (rows,), as shares of any unit: see `minimax.Peak`.
+        L: (rows, len(w)), load: (rows,), as shares of any unit: see `Peak`.
     """
     r = L.shape[1]
     program = Program(reduced, extra=r + 1)  # w, and the peak t
@@ -125,7 +177,7 @@ def least_peak(reduced: LeastSquaresForm, L: Array, load: Array) -> Bound:
     program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
     for sign in (1.0, -1.0):
         program.add("nonnegative", -sign * load, [(0, w, sign * L), (0, t, -np.ones((len(load), 1)))])
-    return program.solve()
+    return program
 
 
 def _cone(kind: str, rows: int) -> object:

@@ -22,6 +22,7 @@ from ...model.mechanism import Mechanism
 from ...model.rotation import skew
 from ..region import Region, free_directions, project
 from .blocks import Block, Cone
+from .rank_one import factor
 
 SIDE = 7  # of the moment matrix
 ONE = 3  # the entry of y between the ends
@@ -34,6 +35,7 @@ _u = np.array([*ENDS[0], *ENDS[1]])[:, None]
 _y = np.arange(SIDE)[:, None, None]
 SQUARES = np.where((ROW == COLUMN) & (np.arange(SIDE)[:, None] == ROW), 1.0, 0.0)  # (7, 28): picks N_ii
 # (7, 6, 28): d svec(y y') / du is linear in y
+SMALL = 1e-6  # share of the least amount: of a column that is all end and no spring
 SLOPES = WEIGHT * (((_u == ROW) & (_y == COLUMN)) * 1.0 + ((_u == COLUMN) & (_y == ROW)))
 
 
@@ -97,11 +99,16 @@ class SpringBlock(Block):
 
     def cones(self) -> Iterable[Cone]:
         yield Cone("semidefinite", np.eye(self.unknowns))
-        limited = [
+        yield Cone("nonnegative", self._limits)
+
+    @property
+    def _limits(self) -> Array:
+        """(limits, unknowns) what is at least 0 in every region: the square of its size less that of the ends."""
+        squares = [
             SQUARES[end].sum(axis=0, keepdims=True) if region.shape == "ball" else SQUARES[end]
             for region, end in zip((self.region_a, self.region_b), ENDS, strict=True)
         ]
-        yield Cone("nonnegative", SQUARES[ONE] - np.vstack(limited))
+        return SQUARES[ONE] - np.vstack(squares)
 
     def part(self, u: Array) -> Array:
         y = self._y(u)
@@ -122,6 +129,15 @@ class SpringBlock(Block):
         Qy = (form @ y[:, None])[..., 0]
         return (Qy @ y)[..., 0], 2 * Qy[..., [*ENDS[0], *ENDS[1]]]
 
+    def weights(self, x: Array, eps: float) -> Array:
+        """Of the logarithm of the determinant, which counts the springs: a matrix of few has few eigenvalues."""
+        return svec(np.linalg.inv(smat(x) + eps * np.eye(SIDE)))
+
+    def split(self, x: Array, least: float) -> tuple[Array, Array]:
+        y = factor(smat(x), smat(self._limits), least).T
+        y = y[y[:, ONE] ** 2 >= least * SMALL]
+        return y[:, ONE] ** 2, (y / y[:, [ONE]])[:, [*ENDS[0], *ENDS[1]]]
+
     def project(self, u: Array) -> Array:
         return project(u.reshape(-1, 2, 3), self._is_box).reshape(u.shape)
 
@@ -130,6 +146,12 @@ class SpringBlock(Block):
         free = np.zeros((len(u), self.shape, self.shape))
         free[:, :3, :3], free[:, 3:, 3:] = keep[:, 0], keep[:, 1]
         return free
+
+    def within(self, u: Array) -> tuple[Array, Array]:
+        balls = np.flatnonzero(~self._is_box)
+        ends, A = u.reshape(2, 3), np.zeros((2, 2, 3))
+        A[balls, balls] = 2 * ends[balls]
+        return A[balls].reshape(-1, self.shape), 1 - (ends[balls] ** 2).sum(axis=1)
 
     def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
         taken = {spring.name for spring in mechanism.springs}
