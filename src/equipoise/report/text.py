@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
-from ..energy.fourier.energy import EXACT
+from ..energy.exactness import EXACT
 from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
@@ -51,13 +51,16 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
 def verdict(balance: Balance) -> Text:
     """One line: exact or how far from it, and what that rests on."""
     certificate = balance.certificate
-    if certificate.kind == "fourier":
-        largest = f"{certificate.terms:,} Fourier terms, the largest that varies is {certificate.max_coefficient:.2g} J"
-        if balance.exact:
-            return Text(f"EXACT: balanced at every configuration, proved ({largest})", style="bold green")
-        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({largest})"
-    else:
+    if certificate.distance is None:
         basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
+    else:
+        size = f"its energy varies by {certificate.distance.relative:.2g} of what there is to balance"
+        if certificate.terms is not None:
+            largest = f"the largest that varies is {certificate.max_coefficient:.2g} J"
+            size = f"{certificate.terms:,} Fourier terms, {largest}"
+        if balance.exact:
+            return Text(f"EXACT: balanced at every configuration, proved ({size})", style="bold green")
+        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({size})"
     if not len(balance.coordinates):
         return Text("nothing moves: no coordinate to balance", style="yellow")
     if np.isinf(balance.relative):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...balance import fourier_form
+from ...energy.certificate import fourier_form
 from ...model.mechanism import Mechanism
 from ..design import FrontRow, LoadResidual
 from .few_springs import FEASIBLE, SpringSet
