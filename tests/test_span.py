@@ -16,6 +16,7 @@ from random_mechanisms import random_mechanism, with_torsion
 from zoo import PENDULUM_K, hinge, pendulum
 
 from equipoise.energy import FourierEnergy, NoFourierForm, Potential, SpanEnergy
+from equipoise.energy.certificate import proof_of
 from equipoise.energy.exactness import EXACT
 from equipoise.model.elements import Spring
 from equipoise.model.mechanism import Body, Coupling, Mechanism, PointMass
@@ -165,3 +166,4 @@ def test_couplings_between_two_far_ends_are_refused_in_time() -> None:
     m = Mechanism("far", tuple(Body(name, 1.0, (0.1, 0.0, 0.0)) for name in names[1:]), joints, couplings)
     with pytest.raises(NoFourierForm, match="far from each other"):
         _ = SpanEnergy(m).distance
+    assert "far from each other" in (proof_of(m)[1] or "")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 from ..model.errors import NoFourierForm
 from ..model.mechanism import Mechanism
@@ -52,6 +52,15 @@ class Certificate:
                 return Certificate("fourier", samples, len(proof.c), largest, distance=proof.distance)
 
 
+P = TypeVar("P", FourierEnergy, ClosedEnergy, SpanEnergy)
+
+
+def _decided(proof: P) -> P:
+    """The same, when its distance from exact can be had."""
+    _ = proof.distance
+    return proof
+
+
 def proof_of(mechanism: Mechanism, max_terms: int = AFFORDABLE) -> tuple[Proof | None, str | None]:
     """What decides whether a mechanism is balanced, or None and the reason why nothing does.
 
@@ -63,7 +72,7 @@ def proof_of(mechanism: Mechanism, max_terms: int = AFFORDABLE) -> tuple[Proof |
     if series is not None:
         return series, None
     try:
-        return SpanEnergy(mechanism), None
+        return _decided(SpanEnergy(mechanism)), None
     except NoFourierForm as why:
         return None, str(why)
 
@@ -75,8 +84,8 @@ def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[Four
     """
     try:
         if not mechanism.loops:
-            return FourierEnergy(mechanism, max_terms), None
-        closed = ClosedEnergy(mechanism, max_terms)
+            return _decided(FourierEnergy(mechanism, max_terms)), None
+        closed = _decided(ClosedEnergy(mechanism, max_terms))
         return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
     except NoFourierForm as why:
         return None, str(why)

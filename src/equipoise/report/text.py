@@ -109,6 +109,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
             else "no springs on these pairs and regions leave less"
         )
         yield Text(f"  bound       {least}: {why}; {gap}")
+    if design.fewest is not None:
+        yield Text(f"  fewest      {_count(range(design.fewest.springs), 'spring')} for exact balance; {design.fewest}")
     for load in design.loads if len(design.loads) > 1 else ():
         share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
         yield Text(f"  {load.name:<11} {torque(load.residual, floor)} N m  = {share} of {load.unbalanced:.5g} N m")
@@ -151,13 +153,15 @@ def front_table(design: Design) -> Table:
     table.add_column("springs", justify="right")
     for title in ("residual [N m]", "of unbalanced", "bound [N m]"):
         table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("on pairs")
+    for title in ("which is", "on pairs"):
+        table.add_column(title)
     for row in design.front:
         table.add_row(
             str(row.springs),
             "exact" if row.exact else torque(row.residual),
             percent(row.residual / design.unbalanced),
             "-" if row.bound is None else torque(row.bound),
+            design.status(row),
             Text(" ".join(":".join(pair) for pair in row.pairs)),
         )
     return table

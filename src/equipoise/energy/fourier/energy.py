@@ -33,7 +33,6 @@ class FourierEnergy:
         frequency: (T, n) real; zero in the constant term, and so is
         degree: (T, n) whole numbers, of coordinates that slide or that a spring on a joint acts on.
         c: (T,) complex [J, or J/m^degree].
-        scale: [J] how much there is to be balanced, see `exactness`.
 
     Raises:
         NoFourierForm: it has loops, a spring has a free length, a coupling ratio is not a fraction, or there are too
@@ -50,12 +49,16 @@ class FourierEnergy:
         self.frequency = total.keys[:, :n] / frames.denominators
         self.degree = total.keys[:, n:]
         self.c = total.coef[:, 0, 0]
-        self.scale = SpanEnergy(mechanism).scale
 
     @cached_property
     def reach(self) -> Array:
         """(n,) the largest size of each coordinate [m or rad] within its range."""
         return reach(self.tree)
+
+    @cached_property
+    def scale(self) -> float:
+        """[J] how much there is to be balanced, see `exactness`."""
+        return SpanEnergy(self.tree.mechanism).scale
 
     @property
     def varies(self) -> Booleans:

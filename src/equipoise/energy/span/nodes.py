@@ -23,11 +23,13 @@ from ..fourier.frames import denominators
 class Node:
     """A rotation of node `base`: ``R = R_base (A0 + A1 e^is + conj(A1) e^-is)``, s the value of motion `row`.
 
-    `frequency` (n,) is that of e^is, in whole multiples of what the coordinates have in common, and zero where some
-    coordinate turns this node only: then s itself may be the variable instead of it.
+    `axis` is in the frame of `base`. `frequency` (n,) is that of e^is, in whole multiples of what the coordinates have
+    in common, and zero where some coordinate turns this node only: then s itself may be the variable instead of it.
     """
 
     base: int
+    row: int
+    axis: Array
     A0: Array
     A1: Complexes
     frequency: Integers
@@ -50,7 +52,7 @@ class Nodes:
             raise NoFourierForm("it has loops: its energy is no finite sum over the independent coordinates")
         self.tree = tree
         turned = np.count_nonzero(tree.C[tree.rotates], axis=0)
-        alone = tree.C[:, turned == 1].any(axis=1)
+        alone = np.count_nonzero(tree.C[:, turned == 1], axis=1) > 0
         keys = np.rint(tree.C * denominators(tree)).astype(int)
         self._frequency = np.where(alone[:, None], 0, keys)
         self._free = np.abs(tree.C).max(axis=1, initial=0.0) == 0
@@ -82,7 +84,11 @@ class Nodes:
                     R = R @ about(motion.axis, s0)
                     continue
                 A0, A1 = harmonics(motion.axis)
-                self.nodes.append(Node(node, R @ A0, R @ A1 * np.exp(1j * s0), self._frequency[motion.row]))
+                self.nodes.append(
+                    Node(
+                        node, motion.row, R @ motion.axis, R @ A0, R @ A1 * np.exp(1j * s0), self._frequency[motion.row]
+                    )
+                )
                 node, R = len(self.nodes), np.eye(3)
         return node, R
 

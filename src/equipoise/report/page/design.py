@@ -14,6 +14,7 @@ from ...energy.exactness import EXACT
 from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses
+from ...synthesis.fewest import fewest
 from ..schematic import symbols
 from ..text import percent, torque
 from . import pictures
@@ -150,6 +151,10 @@ def certificate_section(balance: Balance) -> Section:
         rows.append(("mobility by rank, by counting", f"{balance.mobility.numerical}, {balance.mobility.gruebler}"))
     blocks: list[Block] = [Table.of("Certificate", ("", "found"), rows)]
     blocks += _bound(balance)
+    least = fewest(balance.mechanism)
+    if least is not None:
+        springs = f"{least.springs} spring{'s' * (least.springs > 1)}"
+        blocks.append(Paragraph(f"Exact balance takes at least {springs} of zero free length; {least}."))
     return Section("Certificate, bound and gap", tuple(blocks))
 
 
