@@ -85,11 +85,14 @@ def test_balanced_but_without_proof() -> None:
     assert b.balanced()  # within the tolerance, on samples
 
 
-def test_too_long_a_form_falls_back_and_says_so() -> None:
+def test_too_long_a_form_is_proved_without_and_has_no_bound() -> None:
     m = ZOO["lenzo_spherical"]().mechanism
     b = check(m, max_terms=20, samples=100)
-    assert (b.exact, b.certificate.kind, b.certificate.terms, b.bound) == (False, "sampled", None, None)
-    assert b.certificate.reason == "its Fourier form has more than 20 terms"
+    assert (b.exact, b.certificate.kind, b.certificate.terms, b.bound) == (True, "span", None, None)
+    assert (b.certificate.reason, b.certificate.max_coefficient) == (None, None)
+    assert b.certificate.distance is not None
+    assert b.certificate.distance.relative < 1e-13
+    assert b.to_dict()["certificate"]["varies"] == b.certificate.distance.varies
     assert b.certificate.samples == 100
     assert b.balanced()
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.balance import fourier_form
+from equipoise.energy.certificate import fourier_form
 from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InputError, UnsupportedError

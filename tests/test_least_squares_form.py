@@ -62,12 +62,13 @@ def test_mean_stored_energy_is_that_of_the_springs():
     assert springs.cost(sampled)[0] == pytest.approx(expected, rel=0.02)
 
 
-def test_limited_joints_and_slides_are_sampled_whole_turns_are_not():
+def test_averages_are_exact_but_where_samples_are_asked_for():
     assert least_squares_form.build(Problem.of(robot("ur5"), span=1)).averaged  # +-360 deg and +-180 deg
-    assert not least_squares_form.build(Problem.of(slides(), span=1)).averaged
     limited = planar_arm([1, 1], [0.3, 0.3], [0.1, 0.1])
     limited = replace(limited, joints=tuple(replace(j, range=(-1.0, 1.0)) for j in limited.joints))
-    assert not least_squares_form.build(Problem.of(limited, span=1)).averaged
+    for mechanism in (slides(), limited):
+        assert least_squares_form.build(Problem.of(mechanism, span=1)).averaged
+        assert not least_squares_form.build(Problem.of(mechanism, span=1, samples=100)).averaged
 
 
 def test_a_spring_between_the_ground_and_a_vertical_axis_is_recognised_as_useless():

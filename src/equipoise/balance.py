@@ -9,15 +9,15 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import inf
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
+from .energy.certificate import AFFORDABLE, Certificate, proof_of
 from .energy.evaluate import Potential
+from .energy.exactness import EXACT
 from .energy.extremes import climb
-from .energy.fourier.closed import ClosedEnergy
-from .energy.fourier.energy import EXACT, FourierEnergy
-from .energy.fourier.frames import MAX_TERMS
+from .energy.fourier.energy import FourierEnergy
 from .energy.reference import State
 from .io import Source, loaded
 from .kinematics import Linkage, Mobility, Tree, sample
@@ -25,7 +25,7 @@ from .kinematics.singular import Avoided, Singular
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.elements import Element
-from .model.errors import InputError, NoFourierForm
+from .model.errors import InputError
 from .model.mechanism import Mechanism
 from .model.notebook import Shown
 from .model.payload import Payload
@@ -33,25 +33,6 @@ from .model.units import Amount, quantity, share
 from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """How the verdict was reached.
-
-    Attributes:
-        kind: "fourier", a proof over all configurations, or "sampled", with `reason` why there is no proof.
-        samples: random poses used for everything that is not the proof.
-        terms: how many the Fourier form has.
-        max_coefficient: its largest that varies [J].
-        reason: why there is no proof.
-    """
-
-    kind: Literal["fourier", "sampled"]
-    samples: int
-    terms: int | None = None
-    max_coefficient: float | None = None
-    reason: str | None = None
 
 
 @frozen
@@ -90,10 +71,10 @@ class Balance(Shown):
     """What is true of a mechanism with its springs.
 
     Attributes:
-        exact: the certificate proves that the energy is constant, to 1e-10 of what gravity has to be balanced.
+        exact: the certificate proves that the energy is constant, to 1e-10 of what is to be balanced (`exactness`).
         unbalanced: torque of gravity alone.
         residual: torque of gravity and springs.
-        bound: (n,) proved bound of the residual torque [N m or N], None where there is no Fourier form.
+        bound: (n,) proved bound of the residual torque [N m or N], None without a Fourier form of affordable length.
         constant: mean of the total energy over the poses [J].
         gravity: smallest and largest gravity energy [J].
         springs: the same of all springs together.
@@ -161,6 +142,8 @@ class Balance(Shown):
                 "kind": self.certificate.kind,
                 "terms": self.certificate.terms,
                 "max_coefficient": self.certificate.max_coefficient,
+                "distance": None if self.certificate.distance is None else self.certificate.distance.relative,
+                "varies": None if self.certificate.distance is None else self.certificate.distance.varies,
                 "samples": self.certificate.samples,
                 "reason": self.certificate.reason,
             },
@@ -184,13 +167,13 @@ class Balance(Shown):
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what overflows is an error at the end
-def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_terms: int = MAX_TERMS) -> Balance:
+def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_terms: int = AFFORDABLE) -> Balance:
     """Judge a mechanism with its springs.
 
     Args:
         mechanism: or the path of its file.
         samples: random poses; the mechanism's workspace says how many by default.
-        max_terms: a longer Fourier form is not computed, and the verdict rests on samples.
+        max_terms: a longer Fourier form is not written out. Exactness is decided all the same, but `bound` is None.
 
     Raises:
         InputError: its loops cannot be closed, the ranges of its joints contradict each other, or its numbers are so
@@ -206,7 +189,8 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
     q = singular.without(sample(tree, samples, seed))
     potential = Potential(mechanism)
     state = potential(q)
-    series, reason = fourier_form(mechanism, max_terms)
+    proof, reason = proof_of(mechanism, max_terms)
+    series = proof if isinstance(proof, FourierEnergy) else None
 
     # every reported extreme climbs on its own: torques, energies both ways, lengths both ways
     def quantities(s: State) -> Array:
@@ -220,14 +204,15 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
     # with loops the bound is one of the open tree's coordinates, not of the actuators
     bound = None if series is None or mechanism.loops else series.torque_bound()
-    proof = [found for found in (None if series is None else series.amplitude, bound) if found is not None]
-    if not all(np.isfinite(found).all() for found in (best, unbalanced_rms, residual_rms, *proof)):
+    proved = [] if proof is None else [proof.distance.varies, proof.distance.scale]
+    bounds = [] if bound is None else [bound]
+    if not all(np.isfinite(found).all() for found in (best, unbalanced_rms, residual_rms, *proved, *bounds)):
         raise InputError(f"mechanism '{mechanism.name}' has numbers so large that its energies overflow")
     ranges = [(-float(minus), float(plus)) for minus, plus in zip(low, top, strict=True)]
     return Balance(
         mechanism=mechanism,
-        exact=series is not None and series.exact,
-        certificate=_certificate(series, reason, len(q)),
+        exact=proof is not None and proof.exact,
+        certificate=Certificate.of(proof, reason, len(q)),
         unbalanced=Loads(unbalanced, unbalanced_rms),
         residual=Loads(residual, residual_rms),
         bound=bound,
@@ -250,20 +235,6 @@ def judged(given: Balance | Source) -> Balance:
     return given if isinstance(given, Balance) else check(given)
 
 
-def fourier_form(mechanism: Mechanism, max_terms: int = MAX_TERMS) -> tuple[FourierEnergy | None, str | None]:
-    """The Fourier form of a mechanism's energy, or None and the reason why there is none.
-
-    With loops it is the form up to what the loops make zero, and only one that proves balance says anything.
-    """
-    try:
-        if not mechanism.loops:
-            return FourierEnergy(mechanism, max_terms), None
-        closed = ClosedEnergy(mechanism, max_terms)
-        return (closed, None) if closed.exact else (None, "with its loops the energy has no finite Fourier form")
-    except NoFourierForm as why:
-        return None, str(why)
-
-
 def payload_residual(payload: Payload, mechanism: Mechanism, springs: Sequence[Element]) -> dict[str, float]:
     """Peak residual torque of each coordinate [N m or N] that springs leave at either end of a range of payload."""
     low, high = (check(payload.on(mechanism, mass).with_springs(springs)) for mass in (payload.low, payload.high))
@@ -278,12 +249,6 @@ def largest_share(residual: Array, unbalanced: Array, coordinates: Sequence[Coor
         if left > 0:
             shares.append(left / whole if whole > 0 else np.inf)
     return max(shares)
-
-
-def _certificate(series: FourierEnergy | None, reason: str | None, samples: int) -> Certificate:
-    if series is None:
-        return Certificate("sampled", samples, reason=reason)
-    return Certificate("fourier", samples, len(series.c), float(series.amplitude.max(initial=0)))
 
 
 def _rms(torque: Array) -> Array:

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
-from ..energy.fourier.energy import EXACT
+from ..energy.exactness import EXACT
 from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
@@ -63,13 +63,16 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
 def verdict(balance: Balance) -> Text:
     """One line: exact or how far from it, and what that rests on."""
     certificate = balance.certificate
-    if certificate.kind == "fourier":
-        largest = f"{certificate.terms:,} Fourier terms, the largest that varies is {certificate.max_coefficient:.2g} J"
-        if balance.exact:
-            return Text(f"EXACT: balanced at every configuration, proved ({largest})", style="bold green")
-        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({largest})"
-    else:
+    if certificate.distance is None:
         basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
+    else:
+        size = f"its energy varies by {certificate.distance.relative:.2g} of what there is to balance"
+        if certificate.terms is not None:
+            largest = f"the largest that varies is {certificate.max_coefficient:.2g} J"
+            size = f"{certificate.terms:,} Fourier terms, {largest}"
+        if balance.exact:
+            return Text(f"EXACT: balanced at every configuration, proved ({size})", style="bold green")
+        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({size})"
     if not len(balance.coordinates):
         return Text("nothing moves: no coordinate to balance", style="yellow")
     if np.isinf(balance.relative):
@@ -119,6 +122,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         yield Text(f"  bound       {least}: {why}; {gap}")
     if design.by_chance:
         yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")
+    if design.fewest is not None:
+        yield Text(f"  fewest      {_count(range(design.fewest.springs), 'spring')} for exact balance; {design.fewest}")
     for load in design.loads if len(design.loads) > 1 else ():
         share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
         yield Text(f"  {load.name:<11} {torque(load.residual, floor)} N m  = {share} of {load.unbalanced:.5g} N m")
@@ -161,13 +166,15 @@ def front_table(design: Design) -> Table:
     table.add_column("springs", justify="right")
     for title in ("residual [N m]", "of unbalanced", "bound [N m]"):
         table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("on pairs")
+    for title in ("which is", "on pairs"):
+        table.add_column(title)
     for row in design.front:
         table.add_row(
             str(row.springs),
             "exact" if row.exact else torque(row.residual),
             percent(row.residual / design.unbalanced),
             "-" if row.bound is None else torque(row.bound),
+            design.status(row),
             Text(" ".join(":".join(pair) for pair in row.pairs)),
         )
     return table

@@ -14,9 +14,12 @@ from ..model.elements import Spring
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.units import Amount, quantity
+from .fewest import Fewest, fewest
 
 if TYPE_CHECKING:
     from .convex.ordinary import Ordinary
+
+REACHED = 1.001  # times the bound: as good as it
 
 
 @dataclass(frozen=True)
@@ -142,6 +145,17 @@ class Design(Shown):
         """The verdict on the finished mechanism, computed from it alone."""
         return self._known or check(self.mechanism)
 
+    @cached_property
+    def fewest(self) -> Fewest | None:
+        """How many springs exact balance needs at least; None where no bound is known, or where springs stayed."""
+        return None if self.free_parameters.get("keep") else fewest(self.mechanism, self.joints)
+
+    def status(self, row: FrontRow) -> str:
+        """Of a row of the front: "optimal" (its bound is reached), "cannot be exact" (proved), or "open"."""
+        if row.exact or (row.bound is not None and row.residual <= REACHED * row.bound):
+            return "optimal"
+        return "cannot be exact" if self.fewest is not None and row.springs < self.fewest.springs else "open"
+
     @property
     def _known(self) -> Balance | None:
         return self.judged if self.judged is not None and self.judged.mechanism is self.mechanism else None
@@ -220,10 +234,12 @@ class Design(Shown):
                     "bound": row.bound,
                     "pairs": [list(pair) for pair in row.pairs],
                     "exact": row.exact,
+                    "status": self.status(row),
                 }
                 for row in self.front
             ],
             "by_chance": self.by_chance,
+            "fewest": None if self.fewest is None else self.fewest.to_dict(),
             "free_parameters": dict(self.free_parameters),
             "free_length": None if self.ordinary is None else self.ordinary.to_dict(),
             "balance": self.balance.to_dict(),

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...kinematics.linkage import Linkage
 from ...kinematics.tree import Link, Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, Integers
 from ...model.errors import NoFourierForm
 from ...model.rotation import harmonics
 from .series import Series
@@ -39,7 +39,7 @@ class Frames:
             raise NoFourierForm("it has loops: its energy is no finite sum over the independent coordinates")
         self.tree = tree
         self.max_terms = min(max_terms, MAX_KEYS // max(1, 2 * tree.n))
-        self.denominators = np.array([_denominator(column) for column in tree.C[tree.rotates].T], int)
+        self.denominators = denominators(tree)
         self._chains: dict[tuple[int, int], Series] = {}
         self._paths: dict[int, list[int]] = {}
         self._like = self._orientations()
@@ -203,6 +203,15 @@ def _nonzero(parts: dict[int, list[Series]]) -> dict[int, Series]:
     """Collect each body's terms and drop what cancels: the steps that both ends of a spring share."""
     summed = {X: Series.sum(series) for X, series in parts.items()}
     return {X: series for X, series in summed.items() if np.abs(series.coef).max() > 0}
+
+
+def denominators(tree: Tree) -> Integers:
+    """(n,) the least whole numbers that make every rotation's ratio to each coordinate whole.
+
+    Raises:
+        NoFourierForm: there are none of a reasonable size.
+    """
+    return np.array([_denominator(column[column != 0]) for column in tree.C[tree.rotates].T], int)
 
 
 def _denominator(ratios: Array) -> int:

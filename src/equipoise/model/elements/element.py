@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ...energy.fourier.frames import Frames
     from ...energy.fourier.series import Series
     from ...energy.kernel.trace import Trace, Value, Vector
+    from ...energy.span.nodes import Nodes
     from ...kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
 
@@ -104,12 +105,25 @@ class Element(ABC):
         """
 
     @abstractmethod
+    def affine(self, nodes: Nodes) -> Array:
+        """What its energy is half the square of, a vector in the world's frame as `nodes` write it [sqrt(J)].
+
+        Raises:
+            NoFourierForm: its energy is no such square.
+        """
+
+    @abstractmethod
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         """Path and energy [J] on the kernel's symbols; the pens get its torque."""
 
     def lumps(self) -> Iterator[tuple[str, float, Vec3]]:
         """Its own mass as (body, mass [kg], point in the body's frame [m])."""
         return iter(())
+
+    @property
+    def turns(self) -> tuple[str, ...]:
+        """The joints whose angle itself, not its sine and cosine, is in its energy."""
+        return ()
 
     # files
 

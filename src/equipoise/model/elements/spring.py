@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ...energy.fourier.frames import Frames
     from ...energy.fourier.series import Series
     from ...energy.kernel.trace import Trace, Value
+    from ...energy.span.nodes import Nodes
     from ...kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
 
@@ -95,6 +96,12 @@ class Spring(Element):
         index, z = frames.tree.index, np.array([*self.p_a, 1.0, *self.p_b])[:, None]
         V = frames.stretch(index[self.body_a], index[self.body_b])
         return frames.quadratic({X: v @ frames.constant(z) for X, v in V.items()}).scaled(self.stiffness / 2)
+
+    def affine(self, nodes: Nodes) -> Array:
+        if self.free_length:
+            raise NoFourierForm(f"spring '{self.name}' has a free length")
+        (a, p_a), (b, p_b) = ((nodes.tree.index[body], np.array(p)) for body, p in self.ends)
+        return np.sqrt(self.stiffness) * nodes.between(a, p_a, b, p_b)
 
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         d, pull = pens.line(self.ends, self.law.scale)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ...energy.fourier.frames import Frames
     from ...energy.fourier.series import Series
     from ...energy.kernel.trace import Trace, Value
+    from ...energy.span.nodes import Nodes
     from ...kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
 
@@ -68,6 +69,16 @@ class TorsionSpring(Element):
         c0, c1, c2 = self.law.polynomial
         angle = frames.value(self.joints)
         return angle.sum([frames.constant(np.array([[c0]])), angle.scaled(c1), (angle @ angle).scaled(c2)])
+
+    def affine(self, nodes: Nodes) -> Array:
+        angle = nodes.zero()
+        angle[0, :, 0] = nodes.value(self.joints)
+        angle[0, 0, 0] -= self.rest
+        return np.sqrt(self.stiffness) * angle
+
+    @property
+    def turns(self) -> tuple[str, ...]:
+        return tuple(joint for joint, _ in self.joints)
 
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         angle, pull = pens.angle(self.joints)

@@ -10,10 +10,11 @@ from typing import Any
 
 from ..._version import __version__
 from ...balance import Balance
-from ...energy.fourier.energy import EXACT
+from ...energy.exactness import EXACT
 from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses
+from ...synthesis.fewest import fewest
 from ..schematic import symbols
 from ..text import percent, torque
 from . import pictures
@@ -130,11 +131,18 @@ def _signed(load: float, floor: float) -> str:
 def certificate_section(balance: Balance) -> Section:
     """What the verdict rests on, and how near the design is to the best possible."""
     c = balance.certificate
-    kind = "Fourier series, a proof for every pose" if c.kind == "fourier" else "random poses, no proof"
-    rows: list[tuple[str, Cell]] = [("kind", kind)]
+    kinds = {
+        "fourier": "Fourier series, a proof for every pose",
+        "span": "a proof for every pose, without the terms of the Fourier series",
+        "sampled": "random poses, no proof",
+    }
+    rows: list[tuple[str, Cell]] = [("kind", kinds[c.kind])]
     if c.terms is not None and c.max_coefficient is not None:
         rows.append(("terms", Number(c.terms, f"{c.terms:,}")))
         rows.append(("largest that varies [J]", Number(c.max_coefficient, f"{c.max_coefficient:.2g}")))
+    if c.distance is not None:
+        share = c.distance.relative
+        rows.append(("energy that varies, of what there is to balance", Number(share, f"{share:.2g}")))
     if c.reason:
         rows.append(("no proof, because", c.reason))
     rows.append(("random poses looked at", Number(c.samples, f"{c.samples:,}")))
@@ -143,6 +151,10 @@ def certificate_section(balance: Balance) -> Section:
         rows.append(("mobility by rank, by counting", f"{balance.mobility.numerical}, {balance.mobility.gruebler}"))
     blocks: list[Block] = [Table.of("Certificate", ("", "found"), rows)]
     blocks += _bound(balance)
+    least = fewest(balance.mechanism)
+    if least is not None:
+        springs = f"{least.springs} spring{'s' * (least.springs > 1)}"
+        blocks.append(Paragraph(f"Exact balance takes at least {springs} of zero free length; {least}."))
     return Section("Certificate, bound and gap", tuple(blocks))
 
 

@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from ...balance import Balance
-from ...energy.fourier.energy import EXACT
+from ...energy.exactness import EXACT
 from ...hardware import Bill
 from ...hardware.realise.bill import bill, way_dict
 from ...hardware.sizing.wire import MM

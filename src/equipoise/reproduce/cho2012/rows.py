@@ -8,7 +8,8 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 
-from ...balance import check, fourier_form
+from ...balance import check
+from ...energy.certificate import fourier_form
 from ...energy.evaluate import Potential
 from ...kinematics import Tree
 from ...model.elements import lines

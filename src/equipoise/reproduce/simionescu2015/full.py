@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...balance import Balance, check, fourier_form
+from ...balance import Balance, check
+from ...energy.certificate import fourier_form
 from ...energy.evaluate import Potential
 from ...kinematics import Tree
 from ...model.mechanism import Body, Joint, Mechanism

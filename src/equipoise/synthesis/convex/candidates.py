@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...balance import fourier_form
+from ...energy.certificate import proof_of
 from ...model.mechanism import Mechanism
 from ..design import FrontRow, LoadResidual
 from .block_sets import FEASIBLE
@@ -37,12 +37,12 @@ def front_row(goal: Goal, count: int, found: SpringSet, bound: float | None) -> 
         bound: none of the sets with so many parts leaves less, as a share of the goal's unit.
     """
     mechanism = with_parts(goal.reduced, found.parts)
-    forms = (fourier_form(load.on(mechanism))[0] for load in goal.reduced.problem.loads)
+    proofs = (proof_of(load.on(mechanism))[0] for load in goal.reduced.problem.loads)
     least = None if bound is None else min(bound, found.value)
     return FrontRow(
         springs=count,
         residual=found.value * goal.unit,
         bound=None if least is None else (least if least >= FEASIBLE else 0.0) * goal.unit,
         pairs=tuple(goal.reduced.blocks[number].place for number in found.parts.block[0]),
-        exact=all(form is not None and form.exact for form in forms),
+        exact=all(proof is not None and proof.exact for proof in proofs),
     )

@@ -27,6 +27,7 @@ from ...model.mechanism import Mechanism
 from ...model.progress import Progress
 from ..problem import Problem
 from .blocks import Block
+from .box_averages import is_box, mean_products
 
 RANK = 1e-12  # singular values below this share of the largest are rounding
 
@@ -103,7 +104,7 @@ class LeastSquaresForm:
 def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresForm:
     """Compress a problem.
 
-    Exact averages need revolute and spherical joints, unlimited or limited to whole turns; else samples are taken.
+    Averages are exact, but for loops, free lengths and limits of coupled joints: then samples are taken.
 
     Raises:
         InputError: its loops cannot be closed, its numbers or regions are so large that the torques overflow.
@@ -161,21 +162,23 @@ def _split(values: Array, blocks: Sequence[Block]) -> tuple[Array, ...]:
 
 
 def _averages(problem: Problem, loaded: Sequence[Mechanism]) -> tuple[Array, Array] | None:
-    """By Parseval: the mean square of a Fourier series' derivative is the sum of |k_j c_k|^2."""
+    """Exact means. Of whole turns by Parseval: the mean square of a series' derivative is the sum of |k_j c_k|^2."""
     blocks = problem.blocks
     tree = Tree.of(loaded[0])
     try:
         every = [Frames(Tree.of(mechanism)) for mechanism in loaded]
         frames = every[0]
-        if not whole_turns(tree, frames.denominators):
+        whole = whole_turns(tree, frames.denominators)
+        if not (whole or is_box(tree)):
             return None
         loads = [_load(own) for own in every]
         forms = [*(block.series(frames) for block in blocks), *loads]
     except NoFourierForm:
         return None
+    if not whole or any(form.keys[:, tree.n :].any() for form in forms):
+        found = mean_products(tree, frames.denominators, forms, len(loads), problem.scale)
+        return None if found is None else (_triangle(found[0]), found[1][: -len(loads)])
     keys, inverse = np.unique(np.concatenate([s.keys for s in forms]), axis=0, return_inverse=True)
-    if keys[:, tree.n :].any():
-        return None  # a power of an angle has no average over all turns
     places = _places([*(block.unknowns for block in blocks), *(1 for _ in loads)])
     A: Complexes = np.zeros((len(keys), places[-1].stop), complex)
     rows = np.split(inverse.ravel(), np.cumsum([len(s) for s in forms])[:-1])

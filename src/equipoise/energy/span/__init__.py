@@ -1,0 +1,1 @@
+"""Exactness without a Fourier series: how far an energy is from constant, in polynomial time."""
