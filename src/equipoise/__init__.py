@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
 from .model import notebook
-from .model.elements import Spring, TorsionSpring
+from .model.elements import Guide, JointElement, LineElement, Spring, TorsionSpring, laws
 from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 if TYPE_CHECKING:
@@ -28,7 +28,10 @@ __all__ = [
     "Body",
     "Coupling",
     "Design",
+    "Guide",
     "Joint",
+    "JointElement",
+    "LineElement",
     "Load",
     "Loop",
     "Mechanism",
@@ -41,6 +44,7 @@ __all__ = [
     "__version__",
     "check",
     "design",
+    "laws",
     "load",
     "save",
     "solve",

@@ -24,6 +24,7 @@ from .kinematics import Linkage, Mobility, Tree, sample
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.elements import Element
+from .model.elements.laws import State as SpringState
 from .model.errors import InputError, NoFourierForm
 from .model.mechanism import Mechanism
 from .model.notebook import Shown
@@ -32,6 +33,7 @@ from .model.units import Amount, quantity, share
 from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
+MARGINS = 4096  # poses at most over which friction is judged
 
 
 @dataclass(frozen=True)
@@ -62,11 +64,40 @@ class Loads:
 
 
 @dataclass(frozen=True)
+class Reached:
+    """That a spring is slack, over-stretched, solid or past its stroke somewhere.
+
+    Attributes:
+        state: which; `state.limit` says that it must not be.
+        share: of the random poses.
+        path: how far beyond it gets [m or rad].
+        configuration: (n,) the pose where it does [rad or m].
+    """
+
+    state: SpringState
+    share: float
+    path: float
+    configuration: tuple[float, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        state = {"state": self.state.name, "beyond": self.state.beyond, "limit": self.state.limit}
+        return {**state, "path": self.path, "share": self.share, "configuration": list(self.configuration)}
+
+
+@dataclass(frozen=True)
 class SpringUse:
-    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m]."""
+    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m].
+
+    Attributes:
+        reached: where it is slack, or passes a limit.
+        margin: (n,) torque of its friction at most, either way [N m or N].
+    """
 
     path: Range
     force: Range
+    reached: tuple[Reached, ...] = ()
+    margin: tuple[float, ...] = ()
 
     @property
     def min_length(self) -> float:
@@ -132,6 +163,12 @@ class Balance(Shown):
         tree = Tree.of(self.mechanism)
         return tree.mobility if isinstance(tree, Linkage) else None
 
+    @property
+    def passed(self) -> list[tuple[str, Reached]]:
+        """The names of springs that pass a limit inside the workspace, and which."""
+        used = zip(self.mechanism.springs, self.use, strict=True)
+        return [(spring.name, one) for spring, use in used for one in use.reached if one.state.limit]
+
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
@@ -173,7 +210,11 @@ class Balance(Shown):
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
-                spring.to_dict(use.path, use.force)
+                {
+                    **spring.to_dict(use.path, use.force),
+                    **({"states": [one.to_dict() for one in use.reached]} if spring.law.states else {}),
+                    **({"friction": list(use.margin)} if use.margin else {}),
+                }
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
             ],
         }
@@ -211,6 +252,7 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
     best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
     n, m = tree.n, len(mechanism.springs)
     unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
+    far = best_q[2 * n + 6 :]  # where each spring is longest, then where shortest
     worst = best_q[n + int(residual.argmax())] if n else q[0]
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
     # with loops the bound is one of the open tree's coordinates, not of the actuators
@@ -233,10 +275,35 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
         use=tuple(
-            SpringUse((-float(minus), float(up)), spring.law.extremes(-float(minus), float(up)))
-            for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
+            _use(spring, (-float(shortest[i]), float(longest[i])), state.path[:, i], (far[m + i], far[i]), margin)
+            for i, (spring, margin) in enumerate(zip(mechanism.springs, _margins(mechanism, q), strict=True))
         ),
     )
+
+
+def _use(spring: Element, path: Range, paths: Array, at: tuple[Array, Array], margin: Array) -> SpringUse:
+    """From the range of its path, the paths of the samples, and the poses where it is shortest and longest."""
+    reached = []
+    for state in spring.law.states:
+        most, pose = path[state.above], at[state.above]
+        if state.holds(np.array(most)):
+            reached.append(Reached(state, float(state.holds(paths).mean()), most, tuple(pose.tolist())))
+    return SpringUse(path, spring.law.extremes(*path), tuple(reached), tuple(margin.tolist()))
+
+
+def _margins(mechanism: Mechanism, q: Array) -> list[Array]:
+    """For each spring the largest torque of its friction over the poses, (n,) [N m or N]; (0,) where it has none."""
+    rubs = any(spring.law.margin for spring in mechanism.springs)
+    tree, q = Tree.of(mechanism), q[:MARGINS]
+    poses = tree.poses(q) if rubs else None
+    found = []
+    for spring in mechanism.springs:
+        if poses is None or not spring.law.margin:
+            found.append(np.zeros(0))
+        else:
+            arms = np.abs(spring.lever_arms(tree, poses, tree.velocities(q, poses)))
+            found.append(spring.law.margin * arms.max(axis=0))
+    return found
 
 
 def judged(given: Balance | Source) -> Balance:

@@ -164,8 +164,8 @@ def _sites(m: Mechanism) -> tuple[dict[str, list[tuple[str, Vec3]]], list[tuple[
     """The sites of each body, and the pairs of sites that loops hold together."""
     names, sites, connects = Names(), defaultdict(list), []
     for spring in m.springs:
-        for letter, (body, p) in zip("ab", spring.ends, strict=False):
-            sites[body].append((names.new(f"{spring.name}.{letter}"), p))
+        for mark, (body, p) in spring.places:
+            sites[body].append((names.new(f"{spring.name}.{mark}"), p))
     for i, loop in enumerate(m.loops):
         for p_a, p_b in _loop_points(loop):
             pair = names.new(f"loop{i}.a"), names.new(f"loop{i}.b")

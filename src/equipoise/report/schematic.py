@@ -107,7 +107,7 @@ class _Pen:
                 self.disc(end, END, style.spring_colour(i))
         placed: list[Array] = []
         for i, line in enumerate(lines):
-            marks = (("a", line[0]), ("b", line[-1])) if len(line) == 2 else ()
+            marks = (("a", line[0]), ("b", line[-1])) if self.mechanism.springs[i].ends else ()
             for letter, p in (*marks, ("k", line.mean(axis=0))):
                 self.label(symbols(self.mechanism, letter)[i], p, placed)
 

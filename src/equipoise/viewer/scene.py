@@ -160,7 +160,7 @@ class Scene:
         for present in self.model.on:
             if present:
                 spring, path = next(on)
-                found.append(abs(float(spring.law.force(path))) / self.reach[spring.force_unit])
+                found.append(abs(float(spring.law.pull(path))) / self.reach[spring.force_unit])
             else:
                 found.append(0.0)
         return found
@@ -169,7 +169,7 @@ class Scene:
         """The largest force of any spring over the random poses, of each unit [N or N m]."""
         reach: dict[str, float] = {}
         for spring, path in zip(self.model.mechanism.springs, self.model.paths().T, strict=True):
-            most = float(np.abs(spring.law.force(path)).max())
+            most = float(np.abs(spring.law.pull(path)).max())
             reach[spring.force_unit] = max(most, reach.get(spring.force_unit, 1e-9))
         return reach
 
