@@ -13,11 +13,14 @@ Choices, where the two differ:
   all joints a little armature. Neither matters to balance.
 - Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero. A
   pose that does is the keyframe "assembled", where one is given. Which coordinates steer the loops is a custom text.
+- What no tendon's spring is gets an actuator on its tendon that nothing steers: one whose force is a constant and a
+  multiple of the length where that is the law, else one of the type `user`, whose force is left to `beyond`.
 - Links are drawn: by their capsules, or by thin ones from each body's origin to its joints. Nothing touches.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -27,7 +30,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from ..model.elements import Vec3
-from ..model.errors import UnsupportedError
+from ..model.elements.laws import Law
+from ..model.errors import EquipoiseWarning, UnsupportedError
 from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
 from ..model.names import Names
 from ..model.rotation import about, from_rpy, to_quaternion
@@ -71,6 +75,12 @@ class JointValue:
         return to_quaternion(R).tolist()
 
 
+def beyond(mechanism: Mechanism) -> dict[str, Law]:
+    """The laws that MJCF cannot hold, by the name of the actuator that stands for each: its force is minus ``pull`` of
+    its tendon's length."""
+    return {s.name: s.law for s in mechanism.springs if not s.mjcf()[1] and s.mjcf_bias() is None}
+
+
 def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     """Every joint of the exported model, replicas and dependent joints included, from the coordinates.
 
@@ -99,21 +109,27 @@ def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     return result
 
 
-def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) -> str:
+def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None, warn: bool = True) -> str:
     """Write a mechanism as MJCF, with its springs as tendons, its point masses and the ends of heavy springs as bodies.
 
     Gravity and masses are exact (to 1e-13 kg on massless bodies); there is no contact.
 
     Args:
         assembled: coordinate -> value [rad or m] of a pose in which the loops close, for a keyframe.
+        warn: where a force cannot be held; who applies `beyond` does not need it.
 
     Raises:
         UnsupportedError: a spherical joint lies between a parallelogram joint's parent and the body it follows.
 
     Warns:
-        EquipoiseWarning: naming bodies whose inertia is unknown (a uniform sphere of radius 0.05 m is written) or
-            impossible (equal moments with the same sum are written). Neither affects balance, only motion.
+        EquipoiseWarning: naming springs whose force MJCF cannot hold, and bodies whose inertia is unknown (a uniform
+            sphere of radius 0.05 m is written) or impossible (equal moments with the same sum are written); an inertia
+            affects motion, not balance.
     """
+    if warn and (lost := beyond(mechanism)):
+        some = ", ".join(f"'{name}' ({law.noun})" for name, law in lost.items())
+        message = f"MJCF cannot hold the force of {some}: its tendon is written, and an actuator without a force"
+        warnings.warn(message, EquipoiseWarning, stacklevel=2)
     twins = replicas(mechanism)
     sites, connects = _sites(mechanism)
     root = ET.Element("mujoco", model=mechanism.name)
@@ -130,8 +146,15 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
     ET.SubElement(default, "geom", contype="0", conaffinity="0", mass="0")
     _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
     equality, tendon = ET.Element("equality"), ET.Element("tendon")
+    actuator = ET.Element("actuator")
     for spring in mechanism.springs:
         tag, values, along = spring.mjcf()
+        if not values:
+            bias, own = spring.mjcf_bias(), {"biastype": "user"}
+            if bias is not None:
+                own = {"biastype": "affine", "biasprm": numbers([-bias[0], -bias[1], 0.0])}
+            given = {"name": spring.name, "tendon": spring.name, "gaintype": "fixed", "gainprm": "0"}
+            ET.SubElement(actuator, "general", {**given, **own})
         attributes = {key: numbers(value) for key, value in values.items()}
         element = ET.SubElement(tendon, tag, {"name": spring.name, **attributes})
         for part, runs in along:
@@ -147,7 +170,7 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
             ET.SubElement(equality, "joint", joint1=hinge.name, joint2=hinge.original, polycoef="0 1 0 0 0")
     for site_a, site_b in connects:
         ET.SubElement(equality, "connect", site1=site_a, site2=site_b)
-    root.extend(element for element in (tendon, equality) if len(element))
+    root.extend(element for element in (tendon, equality, actuator) if len(element))
     if assembled is not None:
         qpos = _qpos(root, joint_map(mechanism), assembled)
         ET.SubElement(ET.SubElement(root, "keyframe"), "key", name=ASSEMBLED, qpos=numbers(qpos))

@@ -11,6 +11,7 @@ own constraint Jacobian to refer them to the independent coordinates.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -96,11 +97,38 @@ class Engine:
             replace(body, inertia=_sphere(body.mass, radius or 0.0)) if body.name in unknown else body
             for body in mechanism.bodies
         )
-        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies))))
+        self.model = mujoco.MjModel.from_xml_string(self._text(replace(mechanism, bodies=tuple(bodies))))
         self.data = mujoco.MjData(self.model)
         self._joints = mjcf.joint_map(mechanism)
-        with quiet(mujoco):
+        # the engine counts no energy of actuators
+        self._actuated = [(self.model.tendon(s.name).id, s.law) for s in mechanism.springs if not s.mjcf()[1]]
+        with self._acting():
             self.settings = self._prepare()
+
+    def _text(self, mechanism: Mechanism) -> str:
+        """Its MJCF, and what the engine has no law for: that is asked of ours at the engine's own lengths."""
+        self._laws = mjcf.beyond(mechanism)
+        return mjcf.to_text(mechanism, warn=False)
+
+    def _bias(self, model: Any, data: Any, actuator: int) -> float:
+        """The force [N or N m] of an actuator that stands for a law of ours."""
+        law = self._laws[model.actuator(actuator).name]
+        return -float(law.pull(np.array(data.actuator_length[actuator])))
+
+    @contextmanager
+    def _acting(self) -> Iterator[None]:
+        """With our laws as the engine's own, which has one place for them in a process."""
+        mj = self._mj
+        with quiet(mj):
+            if not self._laws:
+                yield
+                return
+            before = mj.get_mjcb_act_bias()
+            mj.set_mjcb_act_bias(self._bias)
+            try:
+                yield
+            finally:
+                mj.set_mjcb_act_bias(before)
 
     def _prepare(self) -> Settings:
         mj, model = self._mj, self.model
@@ -161,7 +189,7 @@ class Engine:
         for name, joint in self._joints.items():
             own, address = joint.qpos(values), self.model.joint(name).qposadr[0]
             self.data.qpos[address : address + len(own)] = own
-        with quiet(self._mj):
+        with self._acting():
             self._mj.mj_forward(self.model, self.data)
 
     def values(self, q: Array) -> dict[str, float]:
@@ -190,7 +218,8 @@ class Engine:
 
     def holding(self) -> Array:
         """(n,) [N m or N] what holds the present pose at the independent coordinates, by the engine."""
-        return self.at_coordinates(self.data.qfrc_bias - self.data.qfrc_passive)
+        data = self.data
+        return self.at_coordinates(data.qfrc_bias - data.qfrc_passive - data.qfrc_actuator)
 
     def at_coordinates(self, force: Array) -> Array:
         """(n,) generalised forces (nv,) of the engine, referred to the independent coordinates.
@@ -240,7 +269,8 @@ class Engine:
     @property
     def energy(self) -> float:
         """[J] potential and kinetic, up to a constant."""
-        return float(self.data.energy.sum())
+        lengths = ((law, self.data.ten_length[tendon]) for tendon, law in self._actuated)
+        return float(self.data.energy.sum()) + sum(float(law.energy(np.array(s))) for law, s in lengths)
 
     def run(self, seconds: float) -> None:
         """Go on by `seconds`, at least one time step.
@@ -249,7 +279,7 @@ class Engine:
             EngineError: it diverged; the message says which joint first.
         """
         steps = max(1, round(seconds / self.model.opt.timestep))
-        with quiet(self._mj):
+        with self._acting():
             self._mj.mj_step(self.model, self.data, nstep=steps)
         bad = ~np.isfinite(self.data.qvel) | (np.abs(self.data.qvel) > 1e6)
         if bad.any() or self.data.warning[int(self._mj.mjtWarning.mjWARN_BADQACC)].number:

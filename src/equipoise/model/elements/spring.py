@@ -91,5 +91,7 @@ def lines(mechanism: Mechanism, what: str) -> tuple[Spring, ...]:
     """
     for element in mechanism.springs:
         if not isinstance(element, Spring):
-            raise UnsupportedError(f"'{element.name}' is {element.noun}: {what} covers springs between two points only")
+            raise UnsupportedError(
+                f"'{element.name}' is {element.noun}: {what} covers linear springs between two points only"
+            )
     return tuple(element for element in mechanism.springs if isinstance(element, Spring))
