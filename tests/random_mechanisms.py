@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from equipoise.model.elements import Guide, JointElement, LineElement, Spring, TorsionSpring, Vec3, laws
+from equipoise.model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, Vec3, laws
 from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass, Workspace
 
 RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
@@ -67,8 +67,9 @@ def with_torsion(m: Mechanism, seed: int) -> Mechanism:
     return m.with_springs((*m.springs, *added))
 
 
-def with_elements(m: Mechanism, seed: int) -> Mechanism:
-    """The mechanism with up to five elements more, of every law, on lines, on cables through guides and on joints."""
+def with_elements(m: Mechanism, seed: int, pulleys: bool = True) -> Mechanism:
+    """The mechanism with up to five elements more, of every law, on lines, on joints, on cables through points and
+    over pulleys."""
     rng = np.random.default_rng(seed)
     bodies, hinges = list(m.body_names), [joint.name for joint in m.joints if joint.type == "revolute"]
     added: list[LineElement | JointElement] = []
@@ -80,9 +81,21 @@ def with_elements(m: Mechanism, seed: int) -> Mechanism:
             continue
         a, b, *guides = (str(rng.choice(bodies)) for _ in range(2 + int(rng.choice([0, 0, 1, 2]))))
         if len({a, b, *guides}) > 1 and (guides or a != b):
-            via = tuple(Guide(body, _vector(rng, 0.4)) for body in guides)
+            via = tuple(
+                _guide(rng, body, pulleys and bool(j % 2)) for j, body in enumerate(guides, start=int(rng.integers(2)))
+            )
             added.append(LineElement(f"e{i}", a, _vector(rng, 0.4), b, _vector(rng, 0.4), _of_line(rng), via))
     return m.with_springs((*m.springs, *added))
+
+
+def _guide(rng: np.random.Generator, body: str, pulley: bool) -> Guide:
+    point = _vector(rng, 0.4)
+    if not pulley:
+        return Guide(body, point)
+    axis, radius = _vector(rng, 1.0), float(rng.uniform(0.02, 0.15))
+    across = np.cross(axis, _vector(rng, 1.0))
+    x, y, z = (np.array(point) + 2 * radius * across / np.linalg.norm(across)).tolist()
+    return Pulley(body, point, radius, axis, (x, y, z))
 
 
 def _of_line(rng: np.random.Generator) -> laws.Law:

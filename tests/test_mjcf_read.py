@@ -210,7 +210,7 @@ def test_equalities(tmp_path):
          '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
         ('<geom name="ball" size="0.01" mass="0.1"/>',
          '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><geom geom="ball"/>'
-         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring that does not run through sites only"),
+         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring with a sphere or a pulley block"),
     ],
 )  # fmt: skip
 def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):

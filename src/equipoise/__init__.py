@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
 from .model import notebook
-from .model.elements import Guide, JointElement, LineElement, Spring, TorsionSpring, laws
+from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
 from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ __all__ = [
     "Mechanism",
     "PointMass",
     "Problem",
+    "Pulley",
     "Region",
     "Spring",
     "TorsionSpring",

@@ -212,7 +212,11 @@ class Balance(Shown):
             "springs": [
                 {
                     **spring.to_dict(use.path, use.force),
-                    **({"states": [one.to_dict() for one in use.reached]} if spring.law.states else {}),
+                    **(
+                        {"states": [one.to_dict() for one in use.reached]}
+                        if spring.law.states or not spring.compiled
+                        else {}
+                    ),
                     **({"friction": list(use.margin)} if use.margin else {}),
                 }
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
@@ -275,34 +279,41 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
         use=tuple(
-            _use(spring, (-float(shortest[i]), float(longest[i])), state.path[:, i], (far[m + i], far[i]), margin)
-            for i, (spring, margin) in enumerate(zip(mechanism.springs, _margins(mechanism, q), strict=True))
+            _use(spring, (-float(shortest[i]), float(longest[i])), state.path[:, i], (far[m + i], far[i]), *judged)
+            for i, (spring, judged) in enumerate(zip(mechanism.springs, _judged(mechanism, q), strict=True))
         ),
     )
 
 
-def _use(spring: Element, path: Range, paths: Array, at: tuple[Array, Array], margin: Array) -> SpringUse:
+def _use(
+    spring: Element, path: Range, paths: Array, at: tuple[Array, Array], margin: Array, routed: list[Reached]
+) -> SpringUse:
     """From the range of its path, the paths of the samples, and the poses where it is shortest and longest."""
     reached = []
     for state in spring.law.states:
         most, pose = path[state.above], at[state.above]
         if state.holds(np.array(most)):
             reached.append(Reached(state, float(state.holds(paths).mean()), most, tuple(pose.tolist())))
-    return SpringUse(path, spring.law.extremes(*path), tuple(reached), tuple(margin.tolist()))
+    return SpringUse(path, spring.law.extremes(*path), (*reached, *routed), tuple(margin.tolist()))
 
 
-def _margins(mechanism: Mechanism, q: Array) -> list[Array]:
-    """For each spring the largest torque of its friction over the poses, (n,) [N m or N]; (0,) where it has none."""
-    rubs = any(spring.law.margin for spring in mechanism.springs)
+def _judged(mechanism: Mechanism, q: Array) -> list[tuple[Array, list[Reached]]]:
+    """For each spring the largest torque of its friction over the poses, (n,) [N m or N], (0,) where it has none; and
+    what is to be said of its pulleys."""
     tree, q = Tree.of(mechanism), q[:MARGINS]
-    poses = tree.poses(q) if rubs else None
+    alike = [not spring.law.margin and spring.compiled for spring in mechanism.springs]
+    poses = None if all(alike) else tree.poses(q)
     found = []
     for spring in mechanism.springs:
-        if poses is None or not spring.law.margin:
-            found.append(np.zeros(0))
-        else:
+        margin, routed = np.zeros(0), list[Reached]()
+        if poses is not None and spring.law.margin:
             arms = np.abs(spring.lever_arms(tree, poses, tree.velocities(q, poses)))
-            found.append(spring.law.margin * arms.max(axis=0))
+            margin = spring.law.margin * arms.max(axis=0)
+        for state, values in spring.routing(tree, poses) if poses is not None else ():
+            if (holds := state.holds(values)).any():
+                i = int(values.argmax() if state.above else values.argmin())
+                routed.append(Reached(state, float(holds.mean()), float(values[i]), tuple(q[i].tolist())))
+        found.append((margin, routed))
     return found
 
 

@@ -29,7 +29,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..model.elements import Vec3
+from ..model.elements import Pulley, Vec3
 from ..model.elements.laws import Law
 from ..model.errors import EquipoiseWarning, UnsupportedError
 from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
@@ -241,6 +241,10 @@ def _bodies(
     inertials = Inertials()
     bodies = {body.name: body for body in m.bodies}
     lumps, children, shapes = _lumps(m), defaultdict(list), _shapes(m)
+    wheels: dict[str, list[tuple[str, Pulley]]] = defaultdict(list)
+    for spring in m.springs:
+        for mark, pulley in spring.wheels:
+            wheels[pulley.body].append((f"{spring.name}.{mark}", pulley))
     for joint in m.joints:
         children[joint.parent].append(joint)
     waiting = [(WORLD, world, 0)]
@@ -248,6 +252,8 @@ def _bodies(
         name, element, depth = waiting.pop()
         if depth > MAX_DEPTH:
             raise UnsupportedError(f"MJCF cannot hold a chain of more than {MAX_DEPTH} bodies, as that to '{name}'")
+        for mark, pulley in wheels[name]:
+            _wheel(element, mark, pulley)
         for site, position in sites[name]:
             ET.SubElement(element, "site", name=site, pos=numbers(position))
         for shape in shapes[name]:
@@ -303,6 +309,15 @@ def _shape(body: ET.Element, shape: Capsule) -> None:
     else:
         element.set("type", "capsule")
         element.set("fromto", numbers((*shape.p_a, *shape.p_b)))
+
+
+def _wheel(body: ET.Element, name: str, pulley: Pulley) -> None:
+    """A cylinder that a cable lies on: as wide as its radius to be drawn, endless to the cable."""
+    half = 0.5 * pulley.radius * pulley.frame[2]
+    ends = np.concatenate([np.subtract(pulley.point, half), np.add(pulley.point, half)])
+    ET.SubElement(
+        body, "geom", name=name, type="cylinder", size=numbers([pulley.radius]), fromto=numbers(ends.tolist())
+    )
 
 
 def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:

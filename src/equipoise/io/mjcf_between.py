@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..model.arrays import Array, frozen, vec3
-from ..model.elements import Element, Guide, JointElement, LineElement, Spring, TorsionSpring, Vec3, laws
+from ..model.elements import Element, Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, Vec3, laws
 from ..model.elements.laws.compression import ENDLESS
 from ..model.mechanism import Coupling, Loop
 from ..model.names import Names
@@ -205,13 +205,35 @@ class Between:
             else:
                 source.refuse("tendon", t, "is slack between two angles: such a spring on joints is not known")
             return []
-        if (kinds != int(wrap.mjWRAP_SITE)).any():
-            source.refuse("tendon", t, "is a spring that does not run through sites only: none such is known")
+        guides = [self._guide(t, int(i)) for i in range(first, first + count)]
+        if None in guides:
             return []
-        (body_a, p_a), *via, (body_b, p_b) = (self._point(int(s)) for s in along)
+        begin, *via, end = (guide for guide in guides if guide is not None)
+        own = name, begin.body, begin.point, end.body, end.point
         if not via and isinstance(law, laws.Linear):
-            return [Spring(name, body_a, p_a, body_b, p_b, law.stiffness, law.free_length)]
-        return [LineElement(name, body_a, p_a, body_b, p_b, law, tuple(Guide(*point) for point in via))]
+            return [Spring(*own, law.stiffness, law.free_length)]
+        return [LineElement(*own, law, tuple(via))]
+
+    def _guide(self, t: int, i: int) -> Guide | None:
+        """A site that a tendon runs through, or a cylinder that it lies on; None where that is refused."""
+        model, wrap = self.source.model, self.source.mj.mjtWrap
+        kind, number, side = int(model.wrap_type[i]), int(model.wrap_objid[i]), int(model.wrap_prm[i])
+        if kind == int(wrap.mjWRAP_SITE):
+            return Guide(*self._point(number))
+        if kind != int(wrap.mjWRAP_CYLINDER) or side < 0:
+            what = "a sphere or a pulley block" if side >= 0 or kind != int(wrap.mjWRAP_CYLINDER) else "no side site"
+            self.source.refuse(
+                "tendon", t, f"is a spring with {what}: it runs through sites and on cylinders with a side"
+            )
+            return None
+        body, origin = self.place[int(model.geom_bodyid[number])]
+        beside, p = self._point(side)
+        if beside != body:
+            self.source.refuse("tendon", t, "has a side site on another body than its cylinder: none such is known")
+            return None
+        axis = from_quaternion(model.geom_quat[number])[:, 2]
+        centre = vec3(origin + model.geom_pos[number])
+        return Pulley(body, centre, float(model.geom_size[number, 0]), vec3(axis), p)
 
 
 def _affine(b0: float, b1: float) -> laws.Law:

@@ -13,11 +13,24 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, create_model, field_validator
 
-from ..model.elements import Element, Guide, JointElement, LineElement, Spring, TorsionSpring
+from ..model.elements import Element, Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring
 from ..model.elements.laws import ON_JOINTS, ON_LINES, Law, Linear, Torsional
 from ..model.errors import Fault, InputError
 from ..model.units import quantity
-from .fields import Angle, Item, Length, Mass, Number, Point, Text, TorsionalStiffness, number_of, one_of, rows_of
+from .fields import (
+    Angle,
+    Direction,
+    Item,
+    Length,
+    Mass,
+    Number,
+    Point,
+    Text,
+    TorsionalStiffness,
+    number_of,
+    one_of,
+    rows_of,
+)
 from .tables import csv_rows, heading
 
 LINE = {"path": "length", "force": "force", "energy": "energy"}
@@ -59,6 +72,21 @@ class GuideItem(Item):
     noun = "a guide of a cable"
     body: Text
     point: Point
+    radius: Length | None = None
+    axis: Direction | None = None
+    side: Point | None = Field(default=None, validate_default=True)
+
+    @field_validator("side")
+    @classmethod
+    def _whole(cls, value: object, info: ValidationInfo) -> object:
+        given = [info.data.get("radius", 0), info.data.get("axis", 0), value]  # a wrong value has a fault of its own
+        if any(one is None for one in given) != all(one is None for one in given):
+            raise InputError("a pulley has 'radius', 'axis' and 'side'; a point that the cable runs through has none")
+        return value
+
+    def guide(self) -> Guide:
+        """The point or pulley."""
+        return Guide(self.body, self.point) if self.radius is None else Pulley(**self.values())
 
 
 class LawItem(Item):
@@ -101,7 +129,7 @@ class LineItem(LawItem):
     def element(self, folder: FilePath) -> Element:
         own = {key: getattr(self, key) for key in ("name", "body_a", "p_a", "body_b", "p_b")}
         ends = {key: getattr(self, key) for key in ("mass", "mass_split", "diameter")}
-        law, via = self.made(folder, LINE), tuple(Guide(**guide.values()) for guide in self.via)
+        law, via = self.made(folder, LINE), tuple(guide.guide() for guide in self.via)
         if self.kind == Linear.kind and not via:
             return Spring(**own, **law.values(), **ends)
         return LineElement(**own, law=law, via=via, **ends)

@@ -101,7 +101,7 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
 
 def reached(one: Reached, unit: str) -> str:
     """That a spring is slack or passes a limit, in words; `unit` is its path's."""
-    factor, name = (1e3, "mm") if unit == "m" else (float(np.degrees(1)), "deg")
+    factor, name = (1e3, "mm") if (one.state.unit or unit) == "m" else (float(np.degrees(1)), "deg")
     side = "above" if one.state.above else "below"
     what = one.state.name.upper() if one.state.limit else one.state.name
     where = f"{side} {factor * one.state.beyond:.5g} {name} in {percent(one.share)} of the poses"

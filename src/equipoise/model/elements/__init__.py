@@ -5,7 +5,8 @@ from __future__ import annotations
 from . import laws
 from .along_line import AlongLine
 from .element import Element, Vec3
-from .of_law import Guide, JointElement, LineElement
+from .guides import Guide, Pulley
+from .of_law import JointElement, LineElement
 from .on_joints import OnJoints
 from .spring import Spring, lines
 from .torsion import TorsionSpring
@@ -17,6 +18,7 @@ __all__ = [
     "JointElement",
     "LineElement",
     "OnJoints",
+    "Pulley",
     "Spring",
     "TorsionSpring",
     "Vec3",

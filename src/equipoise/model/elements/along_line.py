@@ -11,6 +11,8 @@ import numpy as np
 from ..arrays import Array
 from ..errors import Fault, NoFourierForm, at_least, finite, known
 from .element import Element, End, Pens, Range, Tendon, Vec3
+from .guides import Guide, Pulley, Wrap
+from .laws import State
 
 if TYPE_CHECKING:
     from ...energy.fourier.frames import Frames
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
     from ..mechanism import Mechanism
 
 Segment = tuple[End, End]
+FLEET = float(np.radians(2.0))
+"""[rad] a cable may be askew to the plane of its pulley before that is reported."""
+LEAST_WRAP = 1e-6
+"""[rad] of a pulley that a cable lies on at least, where it does."""
 
 
 class AlongLine(Element):
@@ -38,8 +44,8 @@ class AlongLine(Element):
         diameter: float
 
     @property
-    def guides(self) -> tuple[End, ...]:
-        """The points between its ends that it runs through."""
+    def guides(self) -> tuple[Guide, ...]:
+        """The points between its ends that it runs through, and the pulleys that it lies on."""
         return ()
 
     @property
@@ -49,27 +55,60 @@ class AlongLine(Element):
     @property
     def places(self) -> tuple[tuple[str, End], ...]:
         a, b = self.ends
-        return ("a", a), *((str(i), guide) for i, guide in enumerate(self.guides, start=1)), ("b", b)
+        guides = ((g.body, g.side if isinstance(g, Pulley) else g.point) for g in self.guides)
+        return ("a", a), *((str(i), guide) for i, guide in enumerate(guides, start=1)), ("b", b)
+
+    @property
+    def wheels(self) -> tuple[tuple[str, Pulley], ...]:
+        """The pulleys that it lies on, each with its mark, which is that of its side in `places`."""
+        return tuple((str(i), g) for i, g in enumerate(self.guides, start=1) if isinstance(g, Pulley))
+
+    @property
+    def compiled(self) -> bool:
+        return not self.wheels
 
     @property
     def segments(self) -> Iterator[Segment]:
-        """Its straight parts."""
+        """Its straight parts, those over pulleys left out."""
+        stops: list[End | None] = [None if isinstance(g, Pulley) else (g.body, g.point) for g in self.guides]
+        a, b = self.ends
+        return ((p, q) for p, q in pairwise([a, *stops, b]) if p is not None and q is not None)
+
+    def _wraps(self, tree: Tree, poses: Poses) -> Iterator[tuple[Pulley, End, End, Wrap]]:
+        """Its parts over pulleys, each with the points before and behind it."""
         points = [end for _, end in self.places]
-        return pairwise(points)
+        for mark, pulley in self.wheels:
+            before, behind = points[int(mark) - 1], points[int(mark) + 1]
+            x_a, x_b = (poses.point(tree.index[body], np.array(p)) for body, p in (before, behind))
+            yield pulley, before, behind, pulley.wrap(tree, poses, x_a, x_b)
+
+    def routing(self, tree: Tree, poses: Poses) -> list[tuple[State, Array]]:
+        """What is to be reported of its pulleys: a state, and the angle (N,) [rad] that it is about."""
+        found = []
+        for (mark, _), (_, _, _, wrap) in zip(self.wheels, self._wraps(tree, poses), strict=True):
+            found.append((State(f"off its pulley {mark}", LEAST_WRAP, False, False, "rad"), wrap.angle))
+            found.append((State(f"askew on its pulley {mark}", FLEET, True, False, "rad"), wrap.fleet))
+        return found
 
     # physics
 
     def path(self, tree: Tree, poses: Poses) -> Array:
-        return sum((_length(_stretch(part, tree, poses)) for part in self.segments), np.zeros(len(poses.s)))
+        straight = (_length(_stretch(part, tree, poses)) for part in self.segments)
+        round_ = (wrap.length for *_, wrap in self._wraps(tree, poses))
+        return sum((*straight, *round_), np.zeros(len(poses.s)))
 
     def lever_arms(self, tree: Tree, poses: Poses, velocities: Velocities) -> Array:
-        return sum(
-            (
-                np.einsum("ni,nij->nj", _unit(_stretch(part, tree, poses)), _rate(part, tree, poses, velocities))
-                for part in self.segments
-            ),
-            np.zeros(()),
-        )
+        found = [
+            np.einsum("ni,nij->nj", _unit(_stretch(part, tree, poses)), _rate(part, tree, poses, velocities))
+            for part in self.segments
+        ]
+        for pulley, *ends, wrap in self._wraps(tree, poses):
+            for (body, p), pull in zip(ends, (wrap.pull_a, wrap.pull_b), strict=True):
+                B, at = tree.index[body], np.array(p)
+                own = velocities.point(poses, B, at)
+                rate = own - pulley.velocity(tree, poses, velocities, poses.point(B, at))
+                found.append(np.einsum("ni,nij->nj", pull, rate))
+        return np.sum(found, axis=0)
 
     def state(self, tree: Tree, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
         if self.guides:
@@ -126,12 +165,20 @@ class AlongLine(Element):
         numbers = self.law.mjcf() or {}
         if min(numbers.get("springlength", [0.0])) < 0:
             numbers = {}  # the engine takes a length below zero for "as in the model's zero pose"
-        return "spatial", numbers, [("site", {"site": f"{self.name}.{mark}"}) for mark, _ in self.places]
+        wheels, names = dict(self.wheels), [(mark, f"{self.name}.{mark}") for mark, _ in self.places]
+        along = [
+            ("geom", {"geom": name, "sidesite": name}) if mark in wheels else ("site", {"site": name})
+            for mark, name in names
+        ]
+        return "spatial", numbers, along
 
     # pictures and words
 
     def outline(self, tree: Tree) -> tuple[End, ...]:
-        return tuple(end for _, end in self.places)
+        """Along it; a pulley's rim is drawn from its side all around."""
+        wheels = dict(self.wheels)
+        parts = ([(end[0], p) for p in wheels[mark].circle()] if mark in wheels else [end] for mark, end in self.places)
+        return tuple(point for part in parts for point in part)
 
     @property
     def where(self) -> str:

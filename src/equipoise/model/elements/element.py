@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ..arrays import Array
 from ..errors import Fault
-from .laws.law import Knob
+from .laws.law import Knob, State
 
 if TYPE_CHECKING:
     from ...energy.fourier.frames import Frames
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ...energy.kernel.trace import Trace, Value, Vector
     from ...kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
+    from .guides import Pulley
 
 Vec3 = tuple[float, float, float]
 End = tuple[str, Vec3]  # a body's name and a point in its frame [m]
@@ -106,6 +107,15 @@ class Element(ABC):
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         """Path and energy [J] on the kernel's symbols; the pens get its torque."""
 
+    @property
+    def compiled(self) -> bool:
+        """Whether it has symbols; if not, its mechanism is summed."""
+        return True
+
+    def routing(self, tree: Tree, poses: Poses) -> list[tuple[State, Array]]:
+        """What is to be reported beside the states of its law: a state, and the number (N,) that it is about."""
+        return []
+
     def lumps(self) -> Iterator[tuple[str, float, Vec3]]:
         """Its own mass as (body, mass [kg], point in the body's frame [m])."""
         return iter(())
@@ -140,6 +150,11 @@ class Element(ABC):
     def places(self) -> tuple[tuple[str, End], ...]:
         """The points that it runs through in order, each with a mark."""
         return tuple(zip("ab", self.ends, strict=False))
+
+    @property
+    def wheels(self) -> tuple[tuple[str, Pulley], ...]:
+        """The pulleys that it lies on, each with a mark."""
+        return ()
 
     @property
     def ends(self) -> tuple[End, ...]:

@@ -3,30 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from ..errors import Fault, finite, known
+from ..errors import Fault
 from .along_line import AlongLine
-from .element import End, Vec3
+from .element import Vec3
+from .guides import Guide, Pulley
 from .laws import Law
 from .on_joints import OnJoints
 
 if TYPE_CHECKING:
     from ..mechanism import Mechanism
-
-
-@dataclass(frozen=True)
-class Guide:
-    """A point of a body that a cable runs through.
-
-    Attributes:
-        body: its name.
-        point: in the body's frame [m].
-    """
-
-    body: str
-    point: Vec3
 
 
 @dataclass(frozen=True)
@@ -58,19 +46,21 @@ class LineElement(AlongLine):
         return f"{self.law.noun}{' along a cable' if self.via else ''}"
 
     @property
-    def guides(self) -> tuple[End, ...]:
-        return tuple((guide.body, guide.point) for guide in self.via)
+    def guides(self) -> tuple[Guide, ...]:
+        return self.via
 
     def faults(self, mechanism: Mechanism) -> Iterator[Fault]:
         yield from super().faults(mechanism)
         bodies = tuple(dict.fromkeys(mechanism.body_names))
         for i, guide in enumerate(self.via):
-            yield from known(("via", i, "body"), guide.body, "body", bodies)
-            yield from finite(("via", i, "point"), guide.point)
+            for fault in guide.faults(bodies):
+                yield replace(fault, path=("via", i, *fault.path))
+            if i and isinstance(guide, Pulley) and isinstance(self.via[i - 1], Pulley):
+                yield Fault(("via", i), "follows another pulley: give a guide point between them, as MuJoCo needs one")
 
     @property
     def keys(self) -> dict[str, Any]:
-        via = [{"body": guide.body, "point": list(guide.point)} for guide in self.via]
+        via = [{f.name: _plain(getattr(guide, f.name)) for f in fields(guide)} for guide in self.via]
         return {**super().keys, **({"via": via} if via else {}), **self.law.values()}
 
     def scaled(self, factor: float) -> LineElement:
@@ -92,3 +82,7 @@ class JointElement(OnJoints):
 
     def scaled(self, factor: float) -> JointElement:
         return replace(self, law=self.law.scaled(factor))
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value

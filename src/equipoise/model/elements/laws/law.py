@@ -31,12 +31,14 @@ class State(NamedTuple):
         beyond: the path [m or rad].
         above: whether it is so at longer paths, or at shorter ones.
         limit: whether it must not be.
+        unit: "m" or "rad", where `beyond` is not of the element's path.
     """
 
     name: str
     beyond: float
     above: bool
     limit: bool
+    unit: str = ""
 
     def holds(self, s: Array) -> Booleans:
         """Where it is so, by more than rounding."""
