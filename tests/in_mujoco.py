@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from equipoise.io import mjcf
+from equipoise.io import mjcf, mjcf_springs
 from equipoise.model.mechanism import Mechanism
 
 
@@ -53,7 +53,7 @@ def mujoco_state(m: Mechanism, model: Any, q: np.ndarray) -> tuple[float, np.nda
                 T[row, column[other]] += ratio
     mujoco.mj_fwdVelocity(model, data)  # at rest: gravity and springs
     mujoco.mj_energyPos(model, data)
-    laws = mjcf.beyond(m)
+    laws = mjcf_springs.beyond(m)
 
     def bias(model: Any, data: Any, actuator: int) -> float:
         """A law that the engine lacks, at its own length."""

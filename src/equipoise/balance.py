@@ -19,12 +19,12 @@ from .energy.fourier.closed import ClosedEnergy
 from .energy.fourier.energy import EXACT, FourierEnergy
 from .energy.fourier.frames import MAX_TERMS
 from .energy.reference import State
+from .energy.spring_use import Reached, SpringUse, uses
 from .io import Source, loaded
 from .kinematics import Linkage, Mobility, Tree, sample
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.elements import Element
-from .model.elements.laws import State as SpringState
 from .model.errors import InputError, NoFourierForm
 from .model.mechanism import Mechanism
 from .model.notebook import Shown
@@ -33,7 +33,6 @@ from .model.units import Amount, quantity, share
 from .model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
 
 Range = tuple[float, float]
-MARGINS = 4096  # poses at most over which friction is judged
 
 
 @dataclass(frozen=True)
@@ -61,58 +60,6 @@ class Loads:
 
     max: Array
     rms: Array
-
-
-@dataclass(frozen=True)
-class Reached:
-    """That a spring is slack, over-stretched, solid or past its stroke somewhere.
-
-    Attributes:
-        state: which; `state.limit` says that it must not be.
-        share: of the random poses.
-        path: how far beyond it gets [m or rad].
-        configuration: (n,) the pose where it does [rad or m].
-    """
-
-    state: SpringState
-    share: float
-    path: float
-    configuration: tuple[float, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        state = {"state": self.state.name, "beyond": self.state.beyond, "limit": self.state.limit}
-        return {**state, "path": self.path, "share": self.share, "configuration": list(self.configuration)}
-
-
-@dataclass(frozen=True)
-class SpringUse:
-    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m].
-
-    Attributes:
-        reached: where it is slack, or passes a limit.
-        margin: (n,) torque of its friction at most, either way [N m or N].
-    """
-
-    path: Range
-    force: Range
-    reached: tuple[Reached, ...] = ()
-    margin: tuple[float, ...] = ()
-
-    @property
-    def min_length(self) -> float:
-        """The shortest it gets [m]."""
-        return self.path[0]
-
-    @property
-    def max_length(self) -> float:
-        """The longest it gets [m]."""
-        return self.path[1]
-
-    @property
-    def max_force(self) -> float:
-        """The largest force magnitude [N]."""
-        return max(map(abs, self.force))
 
 
 @frozen
@@ -254,9 +201,8 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.path, -s.path])
 
     best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
-    n, m = tree.n, len(mechanism.springs)
-    unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
-    far = best_q[2 * n + 6 :]  # where each spring is longest, then where shortest
+    n = tree.n
+    unbalanced, residual, top, low, _ = np.split(best, np.cumsum([n, n, 3, 3]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
     # with loops the bound is one of the open tree's coordinates, not of the actuators
@@ -278,43 +224,8 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         total=ranges[2],
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
-        use=tuple(
-            _use(spring, (-float(shortest[i]), float(longest[i])), state.path[:, i], (far[m + i], far[i]), *judged)
-            for i, (spring, judged) in enumerate(zip(mechanism.springs, _judged(mechanism, q), strict=True))
-        ),
+        use=uses(mechanism, q, state.path, best[2 * n + 6 :], best_q[2 * n + 6 :]),
     )
-
-
-def _use(
-    spring: Element, path: Range, paths: Array, at: tuple[Array, Array], margin: Array, routed: list[Reached]
-) -> SpringUse:
-    """From the range of its path, the paths of the samples, and the poses where it is shortest and longest."""
-    reached = []
-    for state in spring.law.states:
-        most, pose = path[state.above], at[state.above]
-        if state.holds(np.array(most)):
-            reached.append(Reached(state, float(state.holds(paths).mean()), most, tuple(pose.tolist())))
-    return SpringUse(path, spring.law.extremes(*path), (*reached, *routed), tuple(margin.tolist()))
-
-
-def _judged(mechanism: Mechanism, q: Array) -> list[tuple[Array, list[Reached]]]:
-    """For each spring the largest torque of its friction over the poses, (n,) [N m or N], (0,) where it has none; and
-    what is to be said of its pulleys."""
-    tree, q = Tree.of(mechanism), q[:MARGINS]
-    alike = [not spring.law.margin and spring.compiled for spring in mechanism.springs]
-    poses = None if all(alike) else tree.poses(q)
-    found = []
-    for spring in mechanism.springs:
-        margin, routed = np.zeros(0), list[Reached]()
-        if poses is not None and spring.law.margin:
-            arms = np.abs(spring.lever_arms(tree, poses, tree.velocities(q, poses)))
-            margin = spring.law.margin * arms.max(axis=0)
-        for state, values in spring.routing(tree, poses) if poses is not None else ():
-            if (holds := state.holds(values)).any():
-                i = int(values.argmax() if state.above else values.argmin())
-                routed.append(Reached(state, float(holds.mean()), float(values[i]), tuple(q[i].tolist())))
-        found.append((margin, routed))
-    return found
 
 
 def judged(given: Balance | Source) -> Balance:

@@ -13,14 +13,12 @@ Choices, where the two differ:
   all joints a little armature. Neither matters to balance.
 - Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero. A
   pose that does is the keyframe "assembled", where one is given. Which coordinates steer the loops is a custom text.
-- What no tendon's spring is gets an actuator on its tendon that nothing steers: one whose force is a constant and a
-  multiple of the length where that is the law, else one of the type `user`, whose force is left to `beyond`.
+- Springs are tendons, and some actuators: see `mjcf_springs`.
 - Links are drawn: by their capsules, or by thin ones from each body's origin to its joints. Nothing touches.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -29,12 +27,12 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..model.elements import Pulley, Vec3
-from ..model.elements.laws import Law
-from ..model.errors import EquipoiseWarning, UnsupportedError
+from ..model.elements import Vec3
+from ..model.errors import UnsupportedError
 from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
 from ..model.names import Names
 from ..model.rotation import about, from_rpy, to_quaternion
+from . import mjcf_springs
 from .inertials import Inertials
 from .replicas import Replicas, replicas
 from .text import numbers
@@ -73,12 +71,6 @@ class JointValue:
         for axis, (angle, _) in zip(np.eye(3), terms, strict=True):
             R = R @ about(axis, np.array([angle]))[0]
         return to_quaternion(R).tolist()
-
-
-def beyond(mechanism: Mechanism) -> dict[str, Law]:
-    """The laws that MJCF cannot hold, by the name of the actuator that stands for each: its force is minus ``pull`` of
-    its tendon's length."""
-    return {s.name: s.law for s in mechanism.springs if not s.mjcf()[1] and s.mjcf_bias() is None}
 
 
 def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
@@ -126,10 +118,8 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None, 
             sphere of radius 0.05 m is written) or impossible (equal moments with the same sum are written); an inertia
             affects motion, not balance.
     """
-    if warn and (lost := beyond(mechanism)):
-        some = ", ".join(f"'{name}' ({law.noun})" for name, law in lost.items())
-        message = f"MJCF cannot hold the force of {some}: its tendon is written, and an actuator without a force"
-        warnings.warn(message, EquipoiseWarning, stacklevel=2)
+    if warn:
+        mjcf_springs.warn(mechanism)
     twins = replicas(mechanism)
     sites, connects = _sites(mechanism)
     root = ET.Element("mujoco", model=mechanism.name)
@@ -146,20 +136,7 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None, 
     ET.SubElement(default, "geom", contype="0", conaffinity="0", mass="0")
     _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
     equality, tendon = ET.Element("equality"), ET.Element("tendon")
-    actuator = ET.Element("actuator")
-    for spring in mechanism.springs:
-        tag, values, along = spring.mjcf()
-        if not values:
-            bias, own = spring.mjcf_bias(), {"biastype": "user"}
-            if bias is not None:
-                own = {"biastype": "affine", "biasprm": numbers([-bias[0], -bias[1], 0.0])}
-            given = {"name": spring.name, "tendon": spring.name, "gaintype": "fixed", "gainprm": "0"}
-            ET.SubElement(actuator, "general", {**given, **own})
-        attributes = {key: numbers(value) for key, value in values.items()}
-        element = ET.SubElement(tendon, tag, {"name": spring.name, **attributes})
-        for part, runs in along:
-            texts = {key: value if isinstance(value, str) else numbers([value]) for key, value in runs.items()}
-            ET.SubElement(element, part, texts)
+    actuator = mjcf_springs.write(tendon, mechanism)
     if mechanism.independent:
         ET.SubElement(ET.SubElement(root, "custom"), "text", name=INDEPENDENT, data="\n".join(mechanism.independent))
     _couplings(equality, tendon, mechanism)
@@ -241,10 +218,7 @@ def _bodies(
     inertials = Inertials()
     bodies = {body.name: body for body in m.bodies}
     lumps, children, shapes = _lumps(m), defaultdict(list), _shapes(m)
-    wheels: dict[str, list[tuple[str, Pulley]]] = defaultdict(list)
-    for spring in m.springs:
-        for mark, pulley in spring.wheels:
-            wheels[pulley.body].append((f"{spring.name}.{mark}", pulley))
+    wheels = mjcf_springs.wheels(m)
     for joint in m.joints:
         children[joint.parent].append(joint)
     waiting = [(WORLD, world, 0)]
@@ -253,7 +227,7 @@ def _bodies(
         if depth > MAX_DEPTH:
             raise UnsupportedError(f"MJCF cannot hold a chain of more than {MAX_DEPTH} bodies, as that to '{name}'")
         for mark, pulley in wheels[name]:
-            _wheel(element, mark, pulley)
+            mjcf_springs.wheel(element, mark, pulley)
         for site, position in sites[name]:
             ET.SubElement(element, "site", name=site, pos=numbers(position))
         for shape in shapes[name]:
@@ -309,15 +283,6 @@ def _shape(body: ET.Element, shape: Capsule) -> None:
     else:
         element.set("type", "capsule")
         element.set("fromto", numbers((*shape.p_a, *shape.p_b)))
-
-
-def _wheel(body: ET.Element, name: str, pulley: Pulley) -> None:
-    """A cylinder that a cable lies on: as wide as its radius to be drawn, endless to the cable."""
-    half = 0.5 * pulley.radius * pulley.frame[2]
-    ends = np.concatenate([np.subtract(pulley.point, half), np.add(pulley.point, half)])
-    ET.SubElement(
-        body, "geom", name=name, type="cylinder", size=numbers([pulley.radius]), fromto=numbers(ends.tolist())
-    )
 
 
 def _lumps(m: Mechanism) -> dict[str, list[PointMass]]:

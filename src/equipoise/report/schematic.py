@@ -100,7 +100,7 @@ class _Pen:
             self.square(self.at(point))
         lines = [np.array([self.at(point) for point in line]) for line in self.skeleton.springs]
         for i, line in enumerate(lines):
-            path = coiled(line, 0.018 * HEIGHT, 0.017 * HEIGHT)
+            path = coiled(line, 0.018 * HEIGHT, 0.017 * HEIGHT, self.skeleton.looks[i])
             self.line(path, PAPER, 5 * THIN)
             self.line(path, style.spring_colour(i), 1.3 * THICK)
             for end in line[[0, -1]]:

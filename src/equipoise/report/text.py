@@ -9,8 +9,9 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..balance import Balance, Reached
+from ..balance import Balance
 from ..energy.fourier.energy import EXACT
+from ..energy.spring_use import Reached
 from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
@@ -104,6 +105,8 @@ def reached(one: Reached, unit: str) -> str:
     factor, name = (1e3, "mm") if (one.state.unit or unit) == "m" else (float(np.degrees(1)), "deg")
     side = "above" if one.state.above else "below"
     what = one.state.name.upper() if one.state.limit else one.state.name
+    if one.state.unit and not one.state.above:  # that a cable touches nothing is no question of how much
+        return f"{what} in {percent(one.share)} of the poses"
     where = f"{side} {factor * one.state.beyond:.5g} {name} in {percent(one.share)} of the poses"
     return f"{what} {where}, at the most {factor * one.path:.5g} {name}"
 

@@ -11,7 +11,6 @@ own constraint Jacobian to refer them to the independent coordinates.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +23,7 @@ from ..model.arrays import Array
 from ..model.errors import EquipoiseError, Fault, InputError
 from ..model.mechanism import Mechanism
 from ..model.rotation import about, ball_angles, from_quaternion
-from .quiet import quiet
+from .own_laws import OwnLaws
 
 TIMESTEP = {False: 1e-3, True: 1e-4}  # [s] without and with equalities, which are stiff
 SOLREF = (2e-4, 1.0)  # time constant [s] (two steps, the least that is stable) and damping ratio of equalities
@@ -97,38 +96,12 @@ class Engine:
             replace(body, inertia=_sphere(body.mass, radius or 0.0)) if body.name in unknown else body
             for body in mechanism.bodies
         )
-        self.model = mujoco.MjModel.from_xml_string(self._text(replace(mechanism, bodies=tuple(bodies))))
+        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies)), warn=False))
         self.data = mujoco.MjData(self.model)
         self._joints = mjcf.joint_map(mechanism)
-        # the engine counts no energy of actuators
-        self._actuated = [(self.model.tendon(s.name).id, s.law) for s in mechanism.springs if not s.mjcf()[1]]
-        with self._acting():
+        self._own = OwnLaws(mujoco, mechanism)
+        with self._own.acting():
             self.settings = self._prepare()
-
-    def _text(self, mechanism: Mechanism) -> str:
-        """Its MJCF, and what the engine has no law for: that is asked of ours at the engine's own lengths."""
-        self._laws = mjcf.beyond(mechanism)
-        return mjcf.to_text(mechanism, warn=False)
-
-    def _bias(self, model: Any, data: Any, actuator: int) -> float:
-        """The force [N or N m] of an actuator that stands for a law of ours."""
-        law = self._laws[model.actuator(actuator).name]
-        return -float(law.pull(np.array(data.actuator_length[actuator])))
-
-    @contextmanager
-    def _acting(self) -> Iterator[None]:
-        """With our laws as the engine's own, which has one place for them in a process."""
-        mj = self._mj
-        with quiet(mj):
-            if not self._laws:
-                yield
-                return
-            before = mj.get_mjcb_act_bias()
-            mj.set_mjcb_act_bias(self._bias)
-            try:
-                yield
-            finally:
-                mj.set_mjcb_act_bias(before)
 
     def _prepare(self) -> Settings:
         mj, model = self._mj, self.model
@@ -189,7 +162,7 @@ class Engine:
         for name, joint in self._joints.items():
             own, address = joint.qpos(values), self.model.joint(name).qposadr[0]
             self.data.qpos[address : address + len(own)] = own
-        with self._acting():
+        with self._own.acting():
             self._mj.mj_forward(self.model, self.data)
 
     def values(self, q: Array) -> dict[str, float]:
@@ -269,8 +242,7 @@ class Engine:
     @property
     def energy(self) -> float:
         """[J] potential and kinetic, up to a constant."""
-        lengths = ((law, self.data.ten_length[tendon]) for tendon, law in self._actuated)
-        return float(self.data.energy.sum()) + sum(float(law.energy(np.array(s))) for law, s in lengths)
+        return float(self.data.energy.sum()) + self._own.energy(self.data)
 
     def run(self, seconds: float) -> None:
         """Go on by `seconds`, at least one time step.
@@ -279,7 +251,7 @@ class Engine:
             EngineError: it diverged; the message says which joint first.
         """
         steps = max(1, round(seconds / self.model.opt.timestep))
-        with self._acting():
+        with self._own.acting():
             self._mj.mj_step(self.model, self.data, nstep=steps)
         bad = ~np.isfinite(self.data.qvel) | (np.abs(self.data.qvel) > 1e6)
         if bad.any() or self.data.warning[int(self._mj.mjtWarning.mjWARN_BADQACC)].number:

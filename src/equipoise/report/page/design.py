@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ..._version import __version__
-from ...balance import Balance, SpringUse
+from ...balance import Balance
 from ...energy.fourier.energy import EXACT
+from ...energy.spring_use import SpringUse
 from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses

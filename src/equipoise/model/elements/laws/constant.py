@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import Fault
 from ...units import SI_UNITS
-from .law import Knob, Law, amount
+from .law import Knob, Law, Look, amount
 
 if TYPE_CHECKING:
     from ....energy.kernel.trace import Trace, Value
@@ -22,6 +22,7 @@ class _Constant(Law):
     """The same at every path; the one field is it."""
 
     kind: ClassVar[str] = "constant"
+    look: ClassVar[Look] = "line"
 
     @property
     def amount(self) -> float:

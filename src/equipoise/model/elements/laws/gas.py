@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from ...arrays import Array
 from ...errors import Fault, at_least, positive
-from .law import Knob, Law, State, above, amount
+from .law import Knob, Law, Look, State, above, amount
 
 if TYPE_CHECKING:
     from ....energy.kernel.trace import Trace, Value
@@ -35,6 +35,7 @@ class Gas(Law):
 
     kind: ClassVar[str] = "gas"
     noun: ClassVar[str] = "a gas spring"
+    look: ClassVar[Look] = "strut"
     knobs: ClassVar[tuple[Knob, ...]] = (
         Knob("force", "force [N]"),
         Knob("temperature", "temperature [K]", 1.0, 233.15, 353.15),

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from math import degrees, inf, isfinite
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
@@ -46,6 +46,10 @@ class State(NamedTuple):
         return s > self.beyond + margin if self.above else s < self.beyond - margin
 
 
+Look = Literal["coil", "strut", "line"]
+"""A coil, a cylinder with a rod, or a line."""
+
+
 class Knob(NamedTuple):
     """A number of an element that a person turns: its field, its label with the unit, and how many of that unit are one
     of SI. Between `low` and `high` in the label's unit, or from nothing to a multiple of what it is."""
@@ -78,11 +82,13 @@ class Law(ABC):
         kind: as a mechanism file names it.
         noun: as a message names it.
         knobs: its numbers that a viewer offers to turn.
+        look: how it is drawn between two points.
     """
 
     kind: ClassVar[str]
     noun: ClassVar[str]
     knobs: ClassVar[tuple[Knob, ...]] = ()
+    look: ClassVar[Look] = "coil"
 
     # numbers
 
