@@ -119,7 +119,7 @@ class AlongLine(Element):
         return length, np.einsum("ni,nij->nj", pull, _rate(self.ends, tree, poses, velocities))
 
     def series(self, frames: Frames) -> Series:
-        raise NoFourierForm(f"'{self.name}' is {self.noun} on a line: its energy is no finite sum of sines")
+        raise NoFourierForm(f"'{self.name}' is {self.noun}: its energy is no finite sum of sines")
 
     def symbols(self, t: Trace, pens: Pens) -> tuple[Value, Value]:
         if not self.guides:
@@ -191,7 +191,7 @@ class AlongLine(Element):
     def sentence(self, path: Range, force: Range) -> str:
         ends = " to ".join(f"{body} {millimetres(p)}" for body, p in self.ends)
         low, high = (1e3 * length for length in path)
-        through = f" through {len(self.guides)} guides" if self.guides else ""
+        through = f" through {len(self.guides)} guide{'s' * (len(self.guides) > 1)}" if self.guides else ""
         use = f"{low:.1f} to {high:.1f} mm, {force[0]:.4g} to {force[1]:.4g} N"
         return f"{self.name}: {self.law.noun.split(' ', 1)[1]}, {self.law.words()}, {ends} mm{through}, {use}"
 
