@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from equipoise.io import mjcf
+from equipoise.io import mjcf, mjcf_springs
 from equipoise.model.mechanism import Mechanism
 
 
@@ -53,4 +53,17 @@ def mujoco_state(m: Mechanism, model: Any, q: np.ndarray) -> tuple[float, np.nda
                 T[row, column[other]] += ratio
     mujoco.mj_fwdVelocity(model, data)  # at rest: gravity and springs
     mujoco.mj_energyPos(model, data)
-    return float(data.energy[0]), T.T @ data.qfrc_bias, -T.T @ data.qfrc_passive
+    laws = mjcf_springs.beyond(m)
+
+    def bias(model: Any, data: Any, actuator: int) -> float:
+        """A law that the engine lacks, at its own length."""
+        return -float(laws[model.actuator(actuator).name].pull(data.actuator_length[actuator]))
+
+    mujoco.set_mjcb_act_bias(bias if laws else None)
+    mujoco.mj_fwdActuation(model, data)
+    mujoco.set_mjcb_act_bias(None)
+    energy = float(data.energy[0])
+    for spring in m.springs:  # the engine counts no energy of actuators
+        if not spring.mjcf()[1]:
+            energy += float(spring.law.energy(np.array(data.tendon(spring.name).length[0])))
+    return energy, T.T @ data.qfrc_bias, -T.T @ (data.qfrc_passive + data.qfrc_actuator)

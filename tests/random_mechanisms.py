@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from equipoise.model.elements import Spring, TorsionSpring, Vec3
+from equipoise.model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, Vec3, laws
 from equipoise.model.mechanism import JOINT_TYPES, SINGLE, Body, Coupling, Joint, Mechanism, PointMass, Workspace
 
 RATIOS = (-1.0, 2.0, 1.0, -2.0, 3.0, 0.5, -2 / 3, 1 / 3, 0.25)
@@ -65,6 +65,65 @@ def with_torsion(m: Mechanism, seed: int) -> Mechanism:
         terms = tuple((str(name), float(rng.choice(RATIOS))) for name in some)
         added.append(TorsionSpring(f"t{i}", terms, float(rng.uniform(0.5, 20)), float(rng.uniform(-3, 3))))
     return m.with_springs((*m.springs, *added))
+
+
+def with_elements(m: Mechanism, seed: int, pulleys: bool = True) -> Mechanism:
+    """The mechanism with up to five elements more, of every law, on lines, on joints, on cables through points and
+    over pulleys."""
+    rng = np.random.default_rng(seed)
+    bodies, hinges = list(m.body_names), [joint.name for joint in m.joints if joint.type == "revolute"]
+    added: list[LineElement | JointElement] = []
+    for i in range(int(rng.integers(1, 6))):
+        if hinges and rng.random() < 0.3:
+            some = rng.choice(hinges, int(rng.integers(1, min(3, len(hinges)) + 1)), replace=False)
+            terms = tuple((str(name), float(rng.choice(RATIOS))) for name in some)
+            added.append(JointElement(f"e{i}", terms, _of_joint(rng)))
+            continue
+        a, b, *guides = (str(rng.choice(bodies)) for _ in range(2 + int(rng.choice([0, 0, 1, 2]))))
+        if len({a, b, *guides}) > 1 and (guides or a != b):
+            via = tuple(
+                _guide(rng, body, pulleys and bool(j % 2)) for j, body in enumerate(guides, start=int(rng.integers(2)))
+            )
+            added.append(LineElement(f"e{i}", a, _vector(rng, 0.4), b, _vector(rng, 0.4), _of_line(rng), via))
+    return m.with_springs((*m.springs, *added))
+
+
+def _guide(rng: np.random.Generator, body: str, pulley: bool) -> Guide:
+    point = _vector(rng, 0.4)
+    if not pulley:
+        return Guide(body, point)
+    axis, radius = _vector(rng, 1.0), float(rng.uniform(0.02, 0.15))
+    across = np.cross(axis, _vector(rng, 1.0))
+    x, y, z = (np.array(point) + 2 * radius * across / np.linalg.norm(across)).tolist()
+    return Pulley(body, point, radius, axis, (x, y, z))
+
+
+def _of_line(rng: np.random.Generator) -> laws.Law:
+    """Any law, with its kinks inside the lengths that a random mechanism has."""
+    k, length, force = float(rng.uniform(10, 500)), float(rng.uniform(0.2, 1.5)), float(rng.uniform(5, 100))
+    points = tuple(zip(np.cumsum(rng.uniform(0.05, 0.4, 6)).tolist(), rng.uniform(-50, 50, 6).tolist(), strict=True))
+    found: tuple[laws.Law, ...] = (
+        laws.Linear(k, length - 0.5),
+        laws.Extension(k, length),
+        laws.Extension(k, length, force),
+        laws.Compression(k, length),
+        laws.Gas(force, length + 0.2, length, progression=float(rng.uniform(1, 2)), temperature=280.0),
+        laws.ConstantForce(force),
+        laws.Table(points),
+    )
+    return found[int(rng.integers(len(found)))]
+
+
+def _of_joint(rng: np.random.Generator) -> laws.Law:
+    torques = rng.uniform(-5, 5, 6).tolist()
+    points = tuple(zip((np.cumsum(rng.uniform(0.3, 1.5, 6)) - 2).tolist(), torques, strict=True))
+    found: tuple[laws.Law, ...] = (
+        laws.ConstantTorque(torques[0]),
+        laws.Table(points),
+        laws.Cam(points),
+        laws.Cam(cosine=tuple(torques[:2]), sine=tuple(torques[2:5])),
+    )
+    return found[int(rng.integers(len(found)))]
 
 
 def random_poses(mechanism: Mechanism, count: int, seed: int = 0) -> np.ndarray:

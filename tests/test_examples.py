@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from example_files import FOLDER, same
 from loop_zoo import EXAMPLES
 from zoo import ZOO
 
-from equipoise import Balance, check, load
+from equipoise import Balance, Spring, check, load
 from equipoise.energy.evaluate import Potential
 from equipoise.kinematics import Tree, sample
 from equipoise.report.figure import save_figure
@@ -49,8 +50,27 @@ CONVEX = {
 
 
 def test_every_file_has_a_known_answer() -> None:
-    assert {path.stem for path in FOLDER.glob("*.yaml")} == OF_THE_ZOO.keys() | OF_PAPERS | MADE
+    assert {path.stem for path in FOLDER.glob("*.yaml")} == OF_THE_ZOO.keys() | OF_PAPERS | MADE | {"telescope"}
     assert PROVED.keys() | {"delta"} == MADE
+
+
+def test_a_compression_spring_in_a_telescopic_case_is_a_zero_free_length_spring() -> None:
+    """Its length is 450 mm less the distance of pivot and arm, its free length 450 mm: the energy is k/2 distance^2."""
+    telescope = load(FOLDER / "telescope.yaml")
+    arm = replace(telescope, bodies=telescope.bodies[:1], joints=telescope.joints[:1], loops=(), independent=(),
+                  assembly=(), springs=(Spring("s", "world", (0, 0, 0.2), "arm", (0.15, 0, 0), 196.2),))  # fmt: skip
+    q = np.linspace(-1.3, 1.2, 9)[:, None]
+    both = [Potential(m)(q) for m in (telescope, arm)]
+    np.testing.assert_allclose(both[0].springs, both[1].springs, atol=1e-9)
+    np.testing.assert_allclose(both[0].path[:, 0], 0.45 - both[1].path[:, 0], atol=1e-10)
+    assert check(arm).exact
+    balance = check(telescope, samples=200)
+    assert balance.relative < 1e-8
+    assert balance.passed == []
+    low, _ = balance.use[0].path
+    assert low > 0.095
+    tight = telescope.with_springs([telescope.springs[0].changed(solid_length=low + 0.01)])
+    assert [one.state.name for _, one in check(tight, samples=200).passed] == ["solid"]
 
 
 @pytest.mark.parametrize("file", OF_THE_ZOO)

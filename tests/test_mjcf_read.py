@@ -205,11 +205,13 @@ def test_equalities(tmp_path):
 @pytest.mark.parametrize(
     ("inside", "more", "message"),
     [
-        ("", spring('stiffness="100" springlength="0 0.2"'), "tendon 's' is slack from 0 to 0.2 m"),
+        ("", '<tendon><fixed name="s" stiffness="100" springlength="0 0.2"><joint joint="shoulder" coef="1"/></fixed>'
+         '</tendon>', "tendon 's' is slack between two angles"),
         (f'<body name="hand"><joint name="w"/>{ONE_KG}</body>',
          '<equality><joint joint1="w" joint2="shoulder" polycoef="0 0 1 0 0"/></equality>', "is curved"),
-        ("", '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><site site="end"/>'
-         '<site site="hook"/></spatial></tendon>', "tendon 'f' is a spring that does not run straight"),
+        ('<geom name="ball" size="0.01" mass="0.1"/>',
+         '<tendon><spatial name="f" stiffness="3" springlength="1"><site site="hook"/><geom geom="ball"/>'
+         '<site site="end"/></spatial></tendon>', "tendon 'f' is a spring with a sphere or a pulley block"),
     ],
 )  # fmt: skip
 def test_what_has_no_counterpart_is_named(tmp_path, inside, more, message):

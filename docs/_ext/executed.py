@@ -3,6 +3,8 @@
 - ``{run}``: command lines, one each, or Python with the argument ``python``; with what they print. They run in a folder
   of the page, where ``examples`` is. ``:exit:`` the code that the last one ends with; ``:head:``, ``:tail:`` how many
   lines of its output are shown; ``:picture:`` a file that it made, with ``:alt:``.
+- ``{element}``: the lines of one spring in a mechanism file, with its picture on an arm, what `check` says of it, and
+  its force over its length or angle.
 - ``{paper}``: a paper's published and computed numbers, errata and figures.
 """
 
@@ -104,6 +106,36 @@ class Run(Executed):
         return "\n".join(lines) + "\n"
 
 
+ARM = """\
+schema: 1
+name: an arm
+bodies: [{name: arm, mass: 1, com: [0.2, 0, 0]}]
+joints: [{name: hinge, type: revolute, parent: world, child: arm, axis: [0, -1, 0], range: [-70 deg, 70 deg]}]
+springs:
+"""
+
+
+class Element(Executed):
+    has_content = True
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        (name,) = self.arguments
+        lines = "\n".join(self.content)
+        file = self.folder / f"{name}.yaml"
+        file.write_text(ARM + "\n".join(f"  {line}" for line in self.content) + "\n")
+        self.execute(["equipoise", "export", file.name, "--to", "svg", "-o", f"{name}.svg"])
+        curve = str(Path(__file__).with_name("force_curve.py"))
+        self.execute([sys.executable, curve, file.name, f"{name}-force.svg"])
+        said = self.execute(["equipoise", "check", file.name], 1).partition("worst pose:")[2].partition("\n")[2]
+        return [
+            nodes.literal_block(lines, lines, language="yaml"),
+            *self.picture(f"{name}.svg", f"{name} on an arm"),
+            nodes.literal_block(said, said, language="text"),
+            *self.picture(f"{name}-force.svg", f"The force of {name}"),
+        ]
+
+
 class Paper(Executed):
     required_arguments = 1
 
@@ -118,5 +150,6 @@ class Paper(Executed):
 
 def setup(app: Any) -> dict[str, bool]:
     app.add_directive("run", Run)
+    app.add_directive("element", Element)
     app.add_directive("paper", Paper)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -19,7 +19,7 @@ from .model import notebook
 if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
-    from .model.elements import Spring, TorsionSpring
+    from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
     from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
     from .synthesis import Design, Load, Problem, Region, design, solve
 
@@ -28,12 +28,16 @@ __all__ = [
     "Body",
     "Coupling",
     "Design",
+    "Guide",
     "Joint",
+    "JointElement",
+    "LineElement",
     "Load",
     "Loop",
     "Mechanism",
     "PointMass",
     "Problem",
+    "Pulley",
     "Region",
     "Spring",
     "TorsionSpring",
@@ -41,6 +45,7 @@ __all__ = [
     "__version__",
     "check",
     "design",
+    "laws",
     "load",
     "save",
     "solve",
@@ -49,7 +54,7 @@ __all__ = [
 _PLACES = {
     "balance": ("Balance", "check"),
     "io": ("load", "save"),
-    "model.elements": ("Spring", "TorsionSpring"),
+    "model.elements": ("Guide", "JointElement", "LineElement", "Pulley", "Spring", "TorsionSpring", "laws"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
     "synthesis": ("Design", "Load", "Problem", "Region", "design", "solve"),
 }

@@ -6,7 +6,7 @@ Everything is computed from the mechanism alone, so that no design method has to
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cached_property
 from math import inf
 from typing import Any
@@ -19,6 +19,7 @@ from .energy.exactness import EXACT
 from .energy.extremes import climb
 from .energy.fourier.energy import FourierEnergy
 from .energy.reference import State
+from .energy.spring_use import Reached, SpringUse, uses
 from .io import Source, loaded
 from .kinematics import Linkage, Mobility, Tree, sample
 from .kinematics.singular import Avoided, Singular
@@ -41,29 +42,6 @@ class Loads:
 
     max: Array
     rms: Array
-
-
-@dataclass(frozen=True)
-class SpringUse:
-    """Least and largest path and force of a spring over the poses: lengths [m] and [N], or angles [rad] and [N m]."""
-
-    path: Range
-    force: Range
-
-    @property
-    def min_length(self) -> float:
-        """The shortest it gets [m]."""
-        return self.path[0]
-
-    @property
-    def max_length(self) -> float:
-        """The longest it gets [m]."""
-        return self.path[1]
-
-    @property
-    def max_force(self) -> float:
-        """The largest force magnitude [N]."""
-        return max(map(abs, self.force))
 
 
 @frozen
@@ -116,6 +94,12 @@ class Balance(Shown):
         tree = Tree.of(self.mechanism)
         return tree.mobility if isinstance(tree, Linkage) else None
 
+    @property
+    def passed(self) -> list[tuple[str, Reached]]:
+        """The names of springs that pass a limit inside the workspace, and which."""
+        used = zip(self.mechanism.springs, self.use, strict=True)
+        return [(spring.name, one) for spring, use in used for one in use.reached if one.state.limit]
+
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""
@@ -160,7 +144,15 @@ class Balance(Shown):
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
             "springs": [
-                spring.to_dict(use.path, use.force)
+                {
+                    **spring.to_dict(use.path, use.force),
+                    **(
+                        {"states": [one.to_dict() for one in use.reached]}
+                        if spring.law.states or not spring.compiled
+                        else {}
+                    ),
+                    **({"friction": list(use.margin)} if use.margin else {}),
+                }
                 for spring, use in zip(self.mechanism.springs, self.use, strict=True)
             ],
         }
@@ -198,8 +190,8 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.path, -s.path])
 
     best, best_q = climb(tree, lambda x: singular.nowhere(x, quantities(potential(x))), q, seed)
-    n, m = tree.n, len(mechanism.springs)
-    unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
+    n = tree.n
+    unbalanced, residual, top, low, _ = np.split(best, np.cumsum([n, n, 3, 3]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
     unbalanced_rms, residual_rms = _rms(state.gravity_torque), _rms(state.torque)
     # with loops the bound is one of the open tree's coordinates, not of the actuators
@@ -222,10 +214,7 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         total=ranges[2],
         worst_configuration=worst,
         worst_torque=potential(worst).torque[0],
-        use=tuple(
-            SpringUse((-float(minus), float(up)), spring.law.extremes(-float(minus), float(up)))
-            for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
-        ),
+        use=uses(mechanism, q, state.path, best[2 * n + 6 :], best_q[2 * n + 6 :]),
         singular=singular.found(samples - len(q)),
     )
 

@@ -25,7 +25,9 @@ def check(
     seed: Annotated[int, typer.Option(min=0, help="of the random poses")] = 0,
     json: Json = False,
 ) -> None:
-    """Is it balanced? Energies, residual torque, certificate, worst pose. Exit code 1 when it is not.
+    """Is it balanced? Energies, residual torque, certificate, worst pose.
+
+    Exit code 1 when it is not, or when a spring is over-stretched, solid or past its stroke in the workspace.
 
     Example: [bold]equipoise check arm.yaml --tolerance 1%[/bold]
     """
@@ -61,4 +63,4 @@ def check(
             from ..report.robust import sweep_table
 
             terminal.show(iter(["at the payload with the largest residual; the whole range:", sweep_table(swept)]))
-    raise typer.Exit(0 if good else 1)
+    raise typer.Exit(0 if good and not balance.passed else 1)

@@ -28,7 +28,7 @@ class Potential:
     def __call__(self, q: ArrayLike) -> State:
         """Energies, paths and torques at `q`, (N, n) or (n,) for one pose (N = 1)."""
         q = self.tree.batch(q)
-        if len(q) < FEW or self.mechanism.loops:
+        if len(q) < FEW or self.mechanism.loops or not all(spring.compiled for spring in self.mechanism.springs):
             return self.reference(q)
         from .kernel import Kernel  # only who has many poses waits for it
 

@@ -10,6 +10,7 @@ from numbers import Integral, Real
 from typing import Any
 
 from ..model.elements import Element, Spring
+from ..model.elements.laws import Law
 from ..model.errors import Fault, InputError, Path
 from ..model.mechanism import SINGLE, Joint, Mechanism
 from .schema import SCHEMA
@@ -62,8 +63,10 @@ def _item(item: Any) -> dict[str, Any]:
         always = f.name == "axis" and isinstance(item, Joint) and item.type in SINGLE
         if not always and value == f.default:
             continue
-        if f.name == "name" and isinstance(item, Element) and item.kind != Spring.kind:
+        if f.name == "name" and isinstance(item, Element) and not isinstance(item, Spring):
             out |= {"name": value, "kind": item.kind}
+        elif isinstance(value, Law):
+            out |= _item(value)
         elif f.name == "joints" and [ratio for _, ratio in value] == [1.0]:
             out["joint"] = value[0][0]
         elif f.name in ("terms", "joints"):
@@ -71,10 +74,17 @@ def _item(item: Any) -> dict[str, Any]:
         elif isinstance(value, str):
             out[f.name] = value
         elif isinstance(value, tuple):
-            out[f.name] = _numbers(value)
+            out[f.name] = [_listed(one) for one in value]
         else:
             out[f.name] = int(value) if f.name == "samples" else float(value)
     return out
+
+
+def _listed(value: Any) -> Any:
+    """An entry of a list: a number, a pair of them, or an item on one line."""
+    if isinstance(value, tuple):
+        return _numbers(value)
+    return _Line(_item(value)) if dataclasses.is_dataclass(value) else float(value)
 
 
 def _numbers(values: Any) -> list[float]:

@@ -62,7 +62,8 @@ def one_of(what: str, choices: tuple[str, ...]) -> Any:
     return BeforeValidator(check)
 
 
-def _number(dimension: str) -> Any:
+def number_of(dimension: str) -> Any:
+    """What makes a value a number of a dimension in SI."""
     return BeforeValidator(partial(to_si, dimension=dimension))
 
 
@@ -77,15 +78,33 @@ def _list_of(count: int, dimension: str) -> Any:
     return BeforeValidator(check)
 
 
+def rows_of(*dimensions: str) -> Any:
+    """What makes a list numbers of one dimension, or rows of numbers of several."""
+
+    def check(value: object) -> object:
+        if not isinstance(value, list):
+            raise InputError(f"expected a list, found {show(value)}")
+        found: list[Any] = []
+        for i, row in enumerate(value):
+            cells = [row] if len(dimensions) == 1 else row
+            if not isinstance(cells, list) or len(cells) != len(dimensions):
+                raise InputError(Fault((i,), f"expected a list of {' and '.join(dimensions)}, found {show(row)}"))
+            numbers = tuple(quantity(cell, name, i) for cell, name in zip(cells, dimensions, strict=True))
+            found.append(numbers[0] if len(dimensions) == 1 else numbers)
+        return tuple(found)
+
+    return BeforeValidator(check)
+
+
 Text = Annotated[str, BeforeValidator(_text)]
-Number = Annotated[float, _number("number")]
-Length = Annotated[float, _number("length")]
-Angle = Annotated[float, _number("angle")]
-Mass = Annotated[float, _number("mass")]
-Stiffness = Annotated[float, _number("stiffness")]
-TorsionalStiffness = Annotated[float, _number("torsional stiffness")]
-Acceleration = Annotated[float, _number("acceleration")]
-Inertia = Annotated[float, _number("inertia")]
+Number = Annotated[float, number_of("number")]
+Length = Annotated[float, number_of("length")]
+Angle = Annotated[float, number_of("angle")]
+Mass = Annotated[float, number_of("mass")]
+Stiffness = Annotated[float, number_of("stiffness")]
+TorsionalStiffness = Annotated[float, number_of("torsional stiffness")]
+Acceleration = Annotated[float, number_of("acceleration")]
+Inertia = Annotated[float, number_of("inertia")]
 Direction = Annotated[tuple[Number, Number, Number], _list_of(3, "number")]
 Point = Annotated[tuple[Length, Length, Length], _list_of(3, "length")]
 Angles = Annotated[tuple[Angle, Angle, Angle], _list_of(3, "angle")]

@@ -13,6 +13,7 @@ Choices, where the two differ:
   all joints a little armature. Neither matters to balance.
 - Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero. A
   pose that does is the keyframe "assembled", where one is given. Which coordinates steer the loops is a custom text.
+- Springs are tendons, and some actuators: see `mjcf_springs`.
 - Links are drawn: by their capsules, or by thin ones from each body's origin to its joints. Nothing touches.
 """
 
@@ -31,6 +32,7 @@ from ..model.errors import UnsupportedError
 from ..model.mechanism import WORLD, Body, Capsule, Joint, Loop, Mechanism, PointMass
 from ..model.names import Names
 from ..model.rotation import about, from_rpy, to_quaternion
+from . import mjcf_springs
 from .inertials import Inertials
 from .replicas import Replicas, replicas
 from .text import numbers
@@ -99,21 +101,25 @@ def joint_map(mechanism: Mechanism) -> dict[str, JointValue]:
     return result
 
 
-def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) -> str:
+def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None, warn: bool = True) -> str:
     """Write a mechanism as MJCF, with its springs as tendons, its point masses and the ends of heavy springs as bodies.
 
     Gravity and masses are exact (to 1e-13 kg on massless bodies); there is no contact.
 
     Args:
         assembled: coordinate -> value [rad or m] of a pose in which the loops close, for a keyframe.
+        warn: where a force cannot be held; who applies `beyond` does not need it.
 
     Raises:
         UnsupportedError: a spherical joint lies between a parallelogram joint's parent and the body it follows.
 
     Warns:
-        EquipoiseWarning: naming bodies whose inertia is unknown (a uniform sphere of radius 0.05 m is written) or
-            impossible (equal moments with the same sum are written). Neither affects balance, only motion.
+        EquipoiseWarning: naming springs whose force MJCF cannot hold, and bodies whose inertia is unknown (a uniform
+            sphere of radius 0.05 m is written) or impossible (equal moments with the same sum are written); an inertia
+            affects motion, not balance.
     """
+    if warn:
+        mjcf_springs.warn(mechanism)
     twins = replicas(mechanism)
     sites, connects = _sites(mechanism)
     root = ET.Element("mujoco", model=mechanism.name)
@@ -130,13 +136,7 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
     ET.SubElement(default, "geom", contype="0", conaffinity="0", mass="0")
     _bodies(ET.SubElement(root, "worldbody"), mechanism, twins, sites)
     equality, tendon = ET.Element("equality"), ET.Element("tendon")
-    for spring in mechanism.springs:
-        tag, values, along = spring.mjcf()
-        attributes = {key: numbers(value) for key, value in values.items()}
-        element = ET.SubElement(tendon, tag, {"name": spring.name, **attributes})
-        for part, runs in along:
-            texts = {key: value if isinstance(value, str) else numbers([value]) for key, value in runs.items()}
-            ET.SubElement(element, part, texts)
+    actuator = mjcf_springs.write(tendon, mechanism)
     if mechanism.independent:
         ET.SubElement(ET.SubElement(root, "custom"), "text", name=INDEPENDENT, data="\n".join(mechanism.independent))
     _couplings(equality, tendon, mechanism)
@@ -147,7 +147,7 @@ def to_text(mechanism: Mechanism, assembled: Mapping[str, float] | None = None) 
             ET.SubElement(equality, "joint", joint1=hinge.name, joint2=hinge.original, polycoef="0 1 0 0 0")
     for site_a, site_b in connects:
         ET.SubElement(equality, "connect", site1=site_a, site2=site_b)
-    root.extend(element for element in (tendon, equality) if len(element))
+    root.extend(element for element in (tendon, equality, actuator) if len(element))
     if assembled is not None:
         qpos = _qpos(root, joint_map(mechanism), assembled)
         ET.SubElement(ET.SubElement(root, "keyframe"), "key", name=ASSEMBLED, qpos=numbers(qpos))
@@ -164,8 +164,8 @@ def _sites(m: Mechanism) -> tuple[dict[str, list[tuple[str, Vec3]]], list[tuple[
     """The sites of each body, and the pairs of sites that loops hold together."""
     names, sites, connects = Names(), defaultdict(list), []
     for spring in m.springs:
-        for letter, (body, p) in zip("ab", spring.ends, strict=False):
-            sites[body].append((names.new(f"{spring.name}.{letter}"), p))
+        for mark, (body, p) in spring.places:
+            sites[body].append((names.new(f"{spring.name}.{mark}"), p))
     for i, loop in enumerate(m.loops):
         for p_a, p_b in _loop_points(loop):
             pair = names.new(f"loop{i}.a"), names.new(f"loop{i}.b")
@@ -218,6 +218,7 @@ def _bodies(
     inertials = Inertials()
     bodies = {body.name: body for body in m.bodies}
     lumps, children, shapes = _lumps(m), defaultdict(list), _shapes(m)
+    wheels = mjcf_springs.wheels(m)
     for joint in m.joints:
         children[joint.parent].append(joint)
     waiting = [(WORLD, world, 0)]
@@ -225,6 +226,8 @@ def _bodies(
         name, element, depth = waiting.pop()
         if depth > MAX_DEPTH:
             raise UnsupportedError(f"MJCF cannot hold a chain of more than {MAX_DEPTH} bodies, as that to '{name}'")
+        for mark, pulley in wheels[name]:
+            mjcf_springs.wheel(element, mark, pulley)
         for site, position in sites[name]:
             ET.SubElement(element, "site", name=site, pos=numbers(position))
         for shape in shapes[name]:

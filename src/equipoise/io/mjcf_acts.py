@@ -67,6 +67,21 @@ class Model:
         bits = (int(getattr(self.mj.mjtDisableBit, f"mjDSBL_{flag.upper()}", 0)) for flag in flags)
         return any(self.model.opt.disableflags & bit for bit in bits)
 
+    def alone(self, actuator: int) -> bool:
+        """Whether an actuator exerts a force that nothing steers."""
+        model = self.model
+        return not np.any(model.actuator_gainprm[actuator]) and bool(np.any(model.actuator_biasprm[actuator, :2]))
+
+    def bias(self, a: int) -> tuple[int, float, float] | None:
+        """Of such an actuator on a tendon: the tendon, and (b0, b1) of its force ``-(b0 + b1 length)``; else None."""
+        model, mj = self.model, self.mj
+        if not self.alone(a) or int(model.actuator_trntype[a]) != int(mj.mjtTrn.mjTRN_TENDON):
+            return None
+        b0, b1, damping = (-float(x) for x in model.actuator_biasprm[a, :3])
+        plain = int(model.actuator_biastype[a]) == int(mj.mjtBias.mjBIAS_AFFINE) and model.actuator_gear[a, 0] == 1.0
+        limited = model.actuator_forcelimited[a]
+        return (int(model.actuator_trnid[a, 0]), b0, b1) if plain and b1 >= 0 and not damping and not limited else None
+
     def say(self) -> None:
         """Name what acts and is not read, and the flags that are heeded."""
         model, notes = self.model, self.notes
@@ -86,9 +101,9 @@ class Model:
         if np.any(model.opt.wind) and (model.opt.density or model.opt.viscosity):
             notes.note("<option wind>", "the force of wind is left out")
         for a in range(getattr(model, "nactuator", model.nu)):
-            muscle = int(model.actuator_biastype[a]) == int(self.mj.mjtBias.mjBIAS_MUSCLE)
-            alone = not np.any(model.actuator_gainprm[a]) and np.any(model.actuator_biasprm[a, :2])
-            if muscle or alone:
+            kind, bias = int(model.actuator_biastype[a]), self.mj.mjtBias
+            own = kind in (int(bias.mjBIAS_MUSCLE), int(bias.mjBIAS_USER))
+            if own or (self.alone(a) and self.bias(a) is None):
                 self.note("actuator", a, "what it pulls without being told to is left out")
 
     def _flags(self) -> None:

@@ -14,7 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..model.arrays import Array, frozen, vec3
-from ..model.elements import Element, Spring, TorsionSpring, Vec3
+from ..model.elements import Element, Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, Vec3, laws
+from ..model.elements.laws.compression import ENDLESS
 from ..model.mechanism import Coupling, Loop
 from ..model.names import Names
 from ..model.rotation import from_quaternion
@@ -162,38 +163,82 @@ class Between:
         for t in range(model.ntendon):
             if self._bent(t):
                 source.refuse("tendon", t, "is a spring that is curved or yields: only linear ones are known")
-            elif model.tendon_stiffness[t] and (found := self._spring(t)):
-                springs.append(replace(found, name=names.new(found.name)))
+            elif model.tendon_stiffness[t]:
+                springs += [replace(found, name=names.new(found.name)) for found in self._tendon(t)]
+        if not source.off("actuation"):
+            for a in range(model.nu):
+                if (bias := source.bias(a)) is not None:
+                    tendon, b0, b1 = bias
+                    name = source.name("actuator", a) or f"actuator {a}"
+                    springs += [replace(one, name=names.new(name)) for one in self._along(tendon, _affine(b0, b1))]
         return tuple(springs)
 
     def _bent(self, t: int) -> bool:
         bends = (getattr(self.source.model, array, None) for array in ("tendon_stiffnesspoly", "tendon_springyield"))
         return any(values is not None and np.any(values[t]) for values in bends)  # an older engine has no such thing
 
-    def _spring(self, t: int) -> Spring | TorsionSpring | None:
-        """The spring that a tendon is; None where that is refused, or holds nothing."""
+    def _tendon(self, t: int) -> list[Element]:
+        """The springs that a tendon is: two where it is slack between two lengths; none where that is refused."""
+        model = self.source.model
+        k, (low, high) = float(model.tendon_stiffness[t]), (float(x) for x in model.tendon_lengthspring[t])
+        if high - low <= 1e-12 * max(high, 1.0):
+            return self._along(t, laws.Linear(k, low))
+        pulls = self._along(t, laws.Extension(k, high)) if high < ENDLESS else []
+        return [*pulls, *(self._along(t, laws.Compression(k, low)) if low > 0 or high >= ENDLESS else [])]
+
+    def _along(self, t: int, law: laws.Law) -> list[Element]:
+        """The element of a law on a tendon's path; nothing where that is refused, or holds nothing."""
         source, model, wrap = self.source, self.source.model, self.source.mj.mjtWrap
-        name, stiffness = source.name("tendon", t) or f"spring {t}", float(model.tendon_stiffness[t])
+        name = source.name("tendon", t) or f"spring {t}"
         first, count = int(model.tendon_adr[t]), int(model.tendon_num[t])
         along, kinds = (array[first : first + count] for array in (model.wrap_objid, model.wrap_type))
-        low, high = (float(x) for x in model.tendon_lengthspring[t])
-        if high - low > 1e-12 * max(high, 1.0):
-            unit = "" if (kinds == int(wrap.mjWRAP_JOINT)).any() else " m"
-            problem = f"is slack from {low:g} to {high:g}{unit}: a spring that only pulls is not known"
-            source.refuse("tendon", t, f"{problem}; springlength='{high:g} {high:g}' pushes below that length as well")
-        elif (kinds == int(wrap.mjWRAP_JOINT)).all():
+        if (kinds == int(wrap.mjWRAP_JOINT)).all():
             ratios = zip(along.tolist(), model.wrap_prm[first : first + count].tolist(), strict=True)
             terms = [(int(j), ratio) for j, ratio in ratios if ratio]
-            if all(int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE) for j, _ in terms):
-                joints = tuple((self.joint_of[j], ratio) for j, ratio in terms)
-                return TorsionSpring(name, joints, stiffness, low) if joints else None
-            source.refuse("tendon", t, "is a spring along slides: only one along hinges is known")
-        elif count != 2 or (kinds != int(wrap.mjWRAP_SITE)).any():
-            source.refuse("tendon", t, "is a spring that does not run straight between two sites: none such is known")
-        else:
-            (body_a, p_a), (body_b, p_b) = (self._point(int(s)) for s in along)
-            return Spring(name, body_a, p_a, body_b, p_b, stiffness, free_length=low)
-        return None
+            joints = tuple((self.joint_of[j], ratio) for j, ratio in terms)
+            if not all(int(model.jnt_type[j]) == int(source.mj.mjtJoint.mjJNT_HINGE) for j, _ in terms):
+                source.refuse("tendon", t, "is a spring along slides: only one along hinges is known")
+            elif isinstance(law, laws.Linear):
+                return [TorsionSpring(name, joints, law.stiffness, law.free_length)] if joints else []
+            elif isinstance(law, laws.ConstantForce):
+                return [JointElement(name, joints, laws.ConstantTorque(law.force))] if joints else []
+            else:
+                source.refuse("tendon", t, "is slack between two angles: such a spring on joints is not known")
+            return []
+        guides = [self._guide(t, int(i)) for i in range(first, first + count)]
+        if None in guides:
+            return []
+        begin, *via, end = (guide for guide in guides if guide is not None)
+        own = name, begin.body, begin.point, end.body, end.point
+        if not via and isinstance(law, laws.Linear):
+            return [Spring(*own, law.stiffness, law.free_length)]
+        return [LineElement(*own, law, tuple(via))]
+
+    def _guide(self, t: int, i: int) -> Guide | None:
+        """A site that a tendon runs through, or a cylinder that it lies on; None where that is refused."""
+        model, wrap = self.source.model, self.source.mj.mjtWrap
+        kind, number, side = int(model.wrap_type[i]), int(model.wrap_objid[i]), int(model.wrap_prm[i])
+        if kind == int(wrap.mjWRAP_SITE):
+            return Guide(*self._point(number))
+        if kind != int(wrap.mjWRAP_CYLINDER) or side < 0:
+            what = "a sphere or a pulley block" if side >= 0 or kind != int(wrap.mjWRAP_CYLINDER) else "no side site"
+            self.source.refuse(
+                "tendon", t, f"is a spring with {what}: it runs through sites and on cylinders with a side"
+            )
+            return None
+        body, origin = self.place[int(model.geom_bodyid[number])]
+        beside, p = self._point(side)
+        if beside != body:
+            self.source.refuse("tendon", t, "has a side site on another body than its cylinder: none such is known")
+            return None
+        axis = from_quaternion(model.geom_quat[number])[:, 2]
+        centre = vec3(origin + model.geom_pos[number])
+        return Pulley(body, centre, float(model.geom_size[number, 0]), vec3(axis), p)
+
+
+def _affine(b0: float, b1: float) -> laws.Law:
+    """The law of the force ``b0 + b1 s``."""
+    return laws.Linear(b1, -b0 / b1) if b1 else laws.ConstantForce(b0)
 
 
 def _connect(made: list[Loop], body_a: str, body_b: str, p_a: Array, p_b: Array) -> None:

@@ -33,7 +33,7 @@ from .fields import (
     show,
     whole,
 )  # fmt: skip
-from .spring_items import of_kind, spring_model
+from .spring_items import GuideItem, of_kind, spring_model
 
 SCHEMA = 1
 
@@ -219,7 +219,7 @@ def _model(path: Path, data: Any) -> type[Item]:
         return MechanismFile
     section, *inside = path
     if section == "springs" and inside:
-        return spring_model(data["springs"][inside[0]])
+        return GuideItem if "via" in inside else spring_model(data["springs"][inside[0]])
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 
-from ..model.elements import Vec3
+from ..model.elements import Element, Vec3
 from ..model.errors import Fault, InputError, Path, nearest
 from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..model.units import quantity
@@ -63,7 +63,8 @@ class _Tree:
 def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mechanism:
     tree, faults = _tree(file, located, base)
     assembly, more = _assembly(file, tree)
-    faults += more
+    springs, wrong = _springs(file, located)
+    faults += more + wrong
     try:
         mechanism = Mechanism(
             name=file.name,
@@ -71,7 +72,7 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             joints=tuple(joint for joint, _ in tree.joints),
             couplings=tuple(coupling for coupling, _ in tree.couplings),
             loops=tuple(Loop(**item.values()) for item in file.loops),
-            springs=tuple(item.element() for item in file.springs),
+            springs=springs,
             masses=tuple(PointMass(**item.values()) for item in file.masses),
             capsules=tuple(Capsule(**item.values()) for item in file.capsules),
             gravity=tree.gravity or file.gravity,
@@ -85,6 +86,18 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
     if faults:
         raise located.error(faults)
     return mechanism
+
+
+def _springs(file: MechanismFile, located: Located) -> tuple[tuple[Element, ...], list[Fault]]:
+    """The springs, and what is wrong with the files of tables."""
+    found, faults = [], []
+    for i, item in enumerate(file.springs):
+        try:
+            found.append(item.element(FilePath(located.file).parent))
+        except InputError as error:
+            own = (fault if fault.file else replace(fault, path=("springs", i, *fault.path)) for fault in error.faults)
+            faults += [Fault(("springs", i, "file"), f"'{item.file}' cannot be used as a table"), *own]
+    return tuple(found), faults
 
 
 def _tree(file: MechanismFile, located: Located, base: str | None) -> tuple[_Tree, list[Fault]]:

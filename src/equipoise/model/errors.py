@@ -127,7 +127,6 @@ def finite(path: Path, values: Iterable[float] | float) -> Iterator[Fault]:
 
 INSTEAD = {
     "mass": "; where something lifts, as buoyancy does, give the mass less what is lifted",
-    "free_length": "; springs tightened beyond zero length are not known",
 }
 """Of a field, what a negative value is meant to say, and how to say it."""
 

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from math import dist, hypot, isclose, pi
 
-from .elements import Spring, TorsionSpring
+from .elements import OnJoints, Spring
 from .mechanism import WORLD, Mechanism
 
 DEGREES = (2.01 * pi, 720.0)  # [rad] whole numbers between these are what angles in degrees look like
@@ -73,11 +73,11 @@ def _measures(m: Mechanism) -> Iterator[tuple[str, float]]:
         *((f"joint '{j.name}'", j.xyz) for j in m.joints),
         *((f"body '{b.name}'", b.com) for b in m.bodies),
         *((f"mass '{x.name}'", x.position) for x in m.masses),
-        *((f"spring '{s.name}'", p) for s in m.springs for _, p in s.ends),
+        *((f"spring '{s.name}'", p) for s in m.springs for _, (_, p) in s.places),
         *((f"the loop of '{x.body_a}' and '{x.body_b}'", p) for x in m.loops for p in (x.p_a, x.p_b)),
     ]
     lengths = [(what, hypot(*p)) for what, p in points]
-    lengths += [(f"spring '{s.name}'", s.free_length) for s in m.springs if isinstance(s, Spring)]
+    lengths += [(f"spring '{s.name}'", abs(s.free_length)) for s in m.springs if isinstance(s, Spring)]
     lengths += [(f"capsule '{c.name}'", c.radius) for c in m.capsules]
     lengths += [(f"joint '{j.name}'", max(map(abs, j.range))) for j in m.joints if j.range and j.type == "prismatic"]
     return ((what, length) for what, length in lengths if length)
@@ -109,7 +109,7 @@ def _masses(m: Mechanism) -> Iterator[tuple[str, str]]:
     for body, mass in _loads(m):
         masses[body] += mass
     held = {body for x in m.loops for body in (x.body_a, x.body_b)} | {body for s in m.springs for body, _ in s.ends}
-    twisted = {joint for s in m.springs if isinstance(s, TorsionSpring) for joint, _ in s.joints}
+    twisted = {joint for s in m.springs if isinstance(s, OnJoints) for joint, _ in s.joints}
     held |= {j.child for j in m.joints if j.name in twisted} | {j.follows for j in m.joints if j.follows}
     moved = {j.parent for j in m.joints if j.type != "fixed"}
     for root, group in _groups(m).items():

@@ -24,6 +24,8 @@ SI_UNITS = {
     "torque": "N m",
     "time": "s",
     "force": "N",
+    "energy": "J",
+    "temperature": "K",
     "rotational damping": "N m s/rad",
     "damping": "N s/m",
     "stress": "Pa",
@@ -200,6 +202,7 @@ def _parse(text: str, dimension: str, expected: str) -> float:
         return number * USUAL[dimension][found]
     try:
         # parse_units takes names, products and powers only: nothing in a file is evaluated
+        found = "degC" if unit == "K" and found in ("C", "°C") else found  # a coulomb is meant by nobody
         return float(_registry().Quantity(number, _registry().parse_units(found.replace("·", "*"))).m_as(_pint(unit)))
     except Exception as error:  # pint has no common base class for unknown and mismatched units
         raise InputError(f"{expected} ({unit}), found {_show(text)}") from error

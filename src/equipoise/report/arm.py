@@ -8,6 +8,7 @@ import numpy as np
 
 from ..kinematics import Poses
 from ..model.arrays import Array
+from ..model.elements.laws.law import Look
 from . import style
 from .poses import View
 from .skeleton import COINCIDE, Bar, Point, Skeleton
@@ -50,8 +51,8 @@ def draw(axes: Any, skeleton: Skeleton, poses: Poses, shown: int, view: View) ->
         pen.joint(point)
     for point in skeleton.masses:
         pen.mass(point)
-    for i, line in enumerate(skeleton.springs):
-        pen.spring(line, style.spring_colour(i))
+    for i, (line, look) in enumerate(zip(skeleton.springs, skeleton.looks, strict=True)):
+        pen.spring(line, style.spring_colour(i), look)
     pen.scale()
 
 
@@ -106,10 +107,10 @@ class _Pen:
         look = {"marker": "s", "markersize": self.thick * 1.25, "markerfacecolor": style.INK}
         self.line(self.view.flat(p[None]), style.INK, 0, self.order(p, 1.2), markeredgecolor="white", **look)
 
-    def spring(self, line: tuple[Point, ...], colour: str) -> None:
+    def spring(self, line: tuple[Point, ...], colour: str, how: Look) -> None:
         places = np.array([self.at(point) for point in line])
         order, flat = self.order(places.mean(axis=0), 2.0), self.view.flat(places)
-        path = coiled(flat, 0.018 * self.size, 0.017 * self.size)
+        path = coiled(flat, 0.018 * self.size, 0.017 * self.size, how)
         self.line(path, "white", 4.0, order, alpha=0.85)
         self.line(path, colour, 2.0, order + 0.001)
         for point, end in zip(places[[0, -1]], flat[[0, -1]], strict=True):
@@ -168,9 +169,22 @@ class _Pen:
         self.axes.text(x + length / 2, y + 1.6 * tick, text, color=style.FAINT, ha="center", va="bottom", zorder=40)
 
 
-def coiled(line: Array, amplitude: float, pitch: float) -> Array:
-    """A spring along a line (points, 2): coils between two points, else the line as it is."""
-    return zigzag(line[0], line[1], amplitude, pitch) if len(line) == 2 else line
+def coiled(line: Array, amplitude: float, pitch: float, look: Look = "coil") -> Array:
+    """A spring along a line (points, 2): coils or a cylinder and its rod between two points, else the line as it is."""
+    if len(line) > 2 or look == "line":
+        return line
+    return zigzag(line[0], line[1], amplitude, pitch) if look == "coil" else strut(line[0], line[1], 0.7 * amplitude)
+
+
+CYLINDER = np.array([(0, 0), (0.06, 0), (0.06, 1), (0.55, 1), (0.55, -1), (0.06, -1), (0.06, 0), (1, 0)])
+"""A cylinder and the rod in it in one line: shares of the way, and of half its width."""
+
+
+def strut(a: Array, b: Array, half: float) -> Array:
+    """A gas spring from `a` to `b` (2,) of half so much width: (points, 2)."""
+    along = b - a
+    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-12)
+    return a + CYLINDER[:, :1] * along + half * CYLINDER[:, 1:] * across
 
 
 def zigzag(a: Array, b: Array, amplitude: float, pitch: float = 0.0) -> Array:

@@ -58,7 +58,7 @@ def to_text(mechanism: Mechanism) -> str:
             space.add_line(place(a), place(b), dxfattribs={"layer": "SPRINGS"})
         value, unit = spring.strength
         texts = [(f"k{i} = {value:.6g} {unit}, {spring.name}", np.mean([place(point) for point in line], axis=0))]
-        for letter, end, (body, p) in zip("ab", line, spring.ends, strict=False):
+        for letter, end, (body, p) in zip("ab", (line[0], line[-1]), spring.ends, strict=False):
             space.add_point(place(end), dxfattribs={"layer": "ATTACHMENTS"})
             own = ", ".join(f"{round(MM * value, 3) + 0.0:g}" for value in p)
             texts.append((f"{letter}{i} {body} ({own})", place(end)))

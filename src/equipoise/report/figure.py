@@ -169,7 +169,7 @@ def _legend(figure: Any, mechanism: Mechanism) -> None:
     named = springs if len(springs) <= LISTED else springs[: LISTED - 1]
     for i, spring in enumerate(named):
         y = i + 0.5
-        path = arm.zigzag(np.array([0.0, y]), np.array([9.0, y]), 0.26)
+        path = arm.coiled(np.array([[0.0, y], [9.0, y]]), 0.26, 0.0, spring.law.look)
         axes.plot(*path.T, color=style.spring_colour(i), linewidth=2.0, solid_joinstyle="round")
         value, unit = spring.strength
         stiffness = f"{f'{value:#.4g}'.rstrip('.')} {unit}"

@@ -100,14 +100,14 @@ class _Pen:
             self.square(self.at(point))
         lines = [np.array([self.at(point) for point in line]) for line in self.skeleton.springs]
         for i, line in enumerate(lines):
-            path = coiled(line, 0.018 * HEIGHT, 0.017 * HEIGHT)
+            path = coiled(line, 0.018 * HEIGHT, 0.017 * HEIGHT, self.skeleton.looks[i])
             self.line(path, PAPER, 5 * THIN)
             self.line(path, style.spring_colour(i), 1.3 * THICK)
             for end in line[[0, -1]]:
                 self.disc(end, END, style.spring_colour(i))
         placed: list[Array] = []
         for i, line in enumerate(lines):
-            marks = (("a", line[0]), ("b", line[-1])) if len(line) == 2 else ()
+            marks = (("a", line[0]), ("b", line[-1])) if self.mechanism.springs[i].ends else ()
             for letter, p in (*marks, ("k", line.mean(axis=0))):
                 self.label(symbols(self.mechanism, letter)[i], p, placed)
 

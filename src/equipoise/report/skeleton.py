@@ -10,6 +10,7 @@ import numpy as np
 
 from ..kinematics import Poses, Tree
 from ..model.arrays import Array
+from ..model.elements.laws.law import Look
 from ..model.mechanism import Mechanism
 
 COINCIDE = 1e-6  # [m] points closer than this are drawn as one
@@ -42,7 +43,7 @@ class Skeleton:
         bars: the bodies, from joint to joint or loop end, and of a last body to its centre of mass or payload.
         brackets: thin lines from a body to the spring ends and payloads that are not on it.
         joints: of joints that move.  base: where the mechanism stands.
-        springs: the line along which each is drawn, from end to end.  masses: one per point mass.
+        springs: the line along which each is drawn, from end to end.  looks: how.  masses: one per point mass.
         fixed: numbers of the bodies that cannot move, the world among them.
     """
 
@@ -51,6 +52,7 @@ class Skeleton:
     joints: tuple[Point, ...]
     base: tuple[Point, ...]
     springs: tuple[tuple[Point, ...], ...]
+    looks: tuple[Look, ...]
     masses: tuple[Point, ...]
     fixed: frozenset[int]
 
@@ -83,6 +85,7 @@ class Skeleton:
             joints=(*(Point(link.parent, link.p0) for link in tree.links if link.joint.type != "fixed"), *met),
             base=base,
             springs=springs,
+            looks=tuple(spring.law.look for spring in mechanism.springs),
             masses=masses,
             fixed=frozenset(fixed),
         )

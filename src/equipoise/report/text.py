@@ -12,6 +12,7 @@ from rich.text import Text
 
 from ..balance import Balance
 from ..energy.exactness import EXACT
+from ..energy.spring_use import Reached
 from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
@@ -100,6 +101,29 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
     """Each spring: how strong, where, and its greatest use."""
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
         yield Text(spring.sentence(use.path, use.force))
+        for one in use.reached:
+            style = "bold red" if one.state.limit else "yellow"
+            yield Text(
+                f"  {reached(one, spring.path_unit)}: {pose(balance.coordinates, np.array(one.configuration))}", style
+            )
+        if use.margin:
+            felt = ", ".join(
+                f"{name} ±{most:.3g} {name.load_unit}"
+                for name, most in zip(balance.coordinates, use.margin, strict=True)
+                if most
+            )
+            yield Text(f"  friction of ±{spring.law.margin:.4g} {spring.force_unit} adds up to {felt} to the residual")
+
+
+def reached(one: Reached, unit: str) -> str:
+    """That a spring is slack or passes a limit, in words; `unit` is its path's."""
+    factor, name = (1e3, "mm") if (one.state.unit or unit) == "m" else (float(np.degrees(1)), "deg")
+    side = "above" if one.state.above else "below"
+    what = one.state.name.upper() if one.state.limit else one.state.name
+    if one.state.unit and not one.state.above:  # that a cable touches nothing is no question of how much
+        return f"{what} in {percent(one.share)} of the poses"
+    where = f"{side} {factor * one.state.beyond:.5g} {name} in {percent(one.share)} of the poses"
+    return f"{what} {where}, at the most {factor * one.path:.5g} {name}"
 
 
 def design_lines(design: Design) -> Iterator[RenderableType]:

@@ -23,7 +23,7 @@ from ..model.arrays import Array
 from ..model.errors import EquipoiseError, Fault, InputError
 from ..model.mechanism import Mechanism
 from ..model.rotation import about, ball_angles, from_quaternion
-from .quiet import quiet
+from .own_laws import OwnLaws
 
 TIMESTEP = {False: 1e-3, True: 1e-4}  # [s] without and with equalities, which are stiff
 SOLREF = (2e-4, 1.0)  # time constant [s] (two steps, the least that is stable) and damping ratio of equalities
@@ -96,10 +96,11 @@ class Engine:
             replace(body, inertia=_sphere(body.mass, radius or 0.0)) if body.name in unknown else body
             for body in mechanism.bodies
         )
-        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies))))
+        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies)), warn=False))
         self.data = mujoco.MjData(self.model)
         self._joints = mjcf.joint_map(mechanism)
-        with quiet(mujoco):
+        self._own = OwnLaws(mujoco, mechanism)
+        with self._own.acting():
             self.settings = self._prepare()
 
     def _prepare(self) -> Settings:
@@ -161,7 +162,7 @@ class Engine:
         for name, joint in self._joints.items():
             own, address = joint.qpos(values), self.model.joint(name).qposadr[0]
             self.data.qpos[address : address + len(own)] = own
-        with quiet(self._mj):
+        with self._own.acting():
             self._mj.mj_forward(self.model, self.data)
 
     def values(self, q: Array) -> dict[str, float]:
@@ -190,7 +191,8 @@ class Engine:
 
     def holding(self) -> Array:
         """(n,) [N m or N] what holds the present pose at the independent coordinates, by the engine."""
-        return self.at_coordinates(self.data.qfrc_bias - self.data.qfrc_passive)
+        data = self.data
+        return self.at_coordinates(data.qfrc_bias - data.qfrc_passive - data.qfrc_actuator)
 
     def at_coordinates(self, force: Array) -> Array:
         """(n,) generalised forces (nv,) of the engine, referred to the independent coordinates.
@@ -240,7 +242,7 @@ class Engine:
     @property
     def energy(self) -> float:
         """[J] potential and kinetic, up to a constant."""
-        return float(self.data.energy.sum())
+        return float(self.data.energy.sum()) + self._own.energy(self.data)
 
     def run(self, seconds: float) -> None:
         """Go on by `seconds`, at least one time step.
@@ -249,7 +251,7 @@ class Engine:
             EngineError: it diverged; the message says which joint first.
         """
         steps = max(1, round(seconds / self.model.opt.timestep))
-        with quiet(self._mj):
+        with self._own.acting():
             self._mj.mj_step(self.model, self.data, nstep=steps)
         bad = ~np.isfinite(self.data.qvel) | (np.abs(self.data.qvel) > 1e6)
         if bad.any() or self.data.warning[int(self._mj.mjtWarning.mjWARN_BADQACC)].number:

@@ -9,11 +9,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..model.arrays import Array
+from ..model.elements.laws.law import Look
 from ..report import style
 from ..report.skeleton import Point, Skeleton
 from .meshes import PlacedMesh
 from .model import Model
-from .shapes import across, capsule, coil, colour, wire
+from .shapes import across, capsule, coil, colour, strut, wire
 
 THICK = 0.032  # radius of a link, of the mechanism's size
 TURNS = 12
@@ -60,7 +61,7 @@ class Scene:
             for i, (parts, line) in enumerate(zip(self.springs, self.skeleton.springs, strict=True)):
                 places, on = np.array([point.at(poses)[0] for point in line]), self.model.on[i]
                 parts["coil"].visible = on
-                parts["coil"].vertices = self._wire(places)[0].astype(np.float32)
+                parts["coil"].vertices = self._wire(places, self.skeleton.looks[i])[0].astype(np.float32)
                 parts["coil"].color = colour(shares[i]) if on else FIXED
                 parts["ends"][0].position, parts["ends"][1].position = places[0], places[-1]
 
@@ -141,16 +142,18 @@ class Scene:
         scene, poses = self.server.scene, self.model.tree.poses(self.model.q[None])
         self.springs = []
         for i, line in enumerate(self.skeleton.springs):
-            vertices, faces = self._wire(np.array([point.at(poses)[0] for point in line]))
+            vertices, faces = self._wire(np.array([point.at(poses)[0] for point in line]), self.skeleton.looks[i])
             mark = _rgb(style.spring_colour(i))
             handle = scene.add_mesh_simple(f"/arm/spring{i}", vertices, faces, color=mark, side="double")
             ends = [scene.add_icosphere(f"/arm/end{i}{j}", 0.6 * self.thick, mark, subdivisions=2) for j in "ab"]
             self.springs.append({"coil": handle, "ends": ends})
 
-    def _wire(self, line: Array) -> tuple[Array, Any]:
-        """A coil between two points, else a wire along them (points, 3)."""
-        if len(line) > 2:
+    def _wire(self, line: Array, look: Look) -> tuple[Array, Any]:
+        """A coil or a cylinder with its rod between two points, else a wire along them (points, 3)."""
+        if len(line) > 2 or look == "line":
             return wire(line, 0.25 * self.thick)
+        if look == "strut":
+            return strut(line[0], line[1], 0.7 * self.thick)
         return coil(line[0], line[1], 0.85 * self.thick, 0.19 * self.thick, TURNS)
 
     def _shares(self) -> list[float]:
@@ -160,7 +163,7 @@ class Scene:
         for present in self.model.on:
             if present:
                 spring, path = next(on)
-                found.append(abs(float(spring.law.force(path))) / self.reach[spring.force_unit])
+                found.append(abs(float(spring.law.pull(path))) / self.reach[spring.force_unit])
             else:
                 found.append(0.0)
         return found
@@ -169,7 +172,7 @@ class Scene:
         """The largest force of any spring over the random poses, of each unit [N or N m]."""
         reach: dict[str, float] = {}
         for spring, path in zip(self.model.mechanism.springs, self.model.paths().T, strict=True):
-            most = float(np.abs(spring.law.force(path)).max())
+            most = float(np.abs(spring.law.pull(path)).max())
             reach[spring.force_unit] = max(most, reach.get(spring.force_unit, 1e-9))
         return reach
 

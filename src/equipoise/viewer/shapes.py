@@ -46,6 +46,13 @@ def wire(line: Array, radius: float) -> tuple[Array, Integers]:
     return _tube(line, normal, radius), _faces(len(line), SIDES)
 
 
+def strut(a: Array, b: Array, radius: float) -> tuple[Array, Integers]:
+    """Vertices and faces of a gas spring from `a` to `b` (3,) [m]: a cylinder over half the way, and a thin rod."""
+    cylinder, faces = capsule(a, a + 0.55 * (b - a), radius)
+    rod, more = capsule(a, b, 0.35 * radius)
+    return np.vstack([cylinder, rod]), np.vstack([faces, more + len(cylinder)]).astype(np.uint32)
+
+
 def colour(share: float) -> tuple[int, int, int]:
     """From blue for no force over yellow to red for `share` 1 of the largest."""
     share = float(np.clip(share, 0, 1))

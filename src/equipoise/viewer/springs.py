@@ -75,7 +75,7 @@ class SpringPanel:
         for widget in self._own():
             widget.remove()
         spring, gui = self.model.springs[self.number], self.server.gui
-        self.kind = spring.kind
+        self.shown = spring.kind, spring.knobs, len(spring.ends)
         with self.folder:
             self.sliders = [gui.add_slider(knob.label, 1.0, 2.0, 0.1, 1.0) for knob in spring.knobs]
             labels = ("a [mm]", "b [mm]") if spring.ends else ()
@@ -102,12 +102,14 @@ class SpringPanel:
     def follow(self) -> None:
         """Keep the handles on the spring's ends while the mechanism moves."""
         if self.drag and self.drag.value:
-            for handle, point in zip(self.handles, self.scene.skeleton.springs[self.number], strict=True):
+            line = self.scene.skeleton.springs[self.number]
+            for handle, point in zip(self.handles, (line[0], line[-1]), strict=True):
                 handle.position = self.scene.world(point)
 
     def _chosen(self) -> None:
         with self.lock:
-            if self.model.springs[self.number].kind != self.kind:
+            spring = self.model.springs[self.number]
+            if self.shown != (spring.kind, spring.knobs, len(spring.ends)):
                 self._numbers()
             self._values()
             self.follow()
@@ -116,7 +118,7 @@ class SpringPanel:
         spring = self.model.springs[self.number]
         self.quiet = True
         for slider, knob in zip(self.sliders, spring.knobs, strict=True):
-            value = knob.factor * getattr(spring, knob.field)
+            value = knob.factor * spring.number(knob.field)
             top = float(f"{SLIDER_REACH * value:.2g}") if knob.high is None else knob.high
             low = top / 1000 if knob.low is None else knob.low
             slider.max, slider.min, slider.step = top, low, (top - low) / 1000 if knob.low is not None else top / 1000
@@ -139,7 +141,7 @@ class SpringPanel:
         with self.lock:
             spring, values = self.model.springs[self.number], {}
             for slider, knob in zip(self.sliders, spring.knobs, strict=True):
-                if abs(slider.value - knob.factor * getattr(spring, knob.field)) > 0.51 * slider.step:
+                if abs(slider.value - knob.factor * spring.number(knob.field)) > 0.51 * slider.step:
                     values[knob.field] = max(slider.value, slider.min) / knob.factor
             for name, point, (_, now) in zip(("p_a", "p_b"), self.points, spring.ends, strict=False):
                 p = np.array(point.value) / 1000.0

@@ -91,6 +91,26 @@ class Frames:
         values = np.concatenate([[np.array(ratios) @ self.tree.s0[list(rows)]], slopes[active]])
         return Series(keys, values[:, None, None].astype(complex))
 
+    def harmonics(self, terms: Iterable[tuple[str, float]], amplitudes: Iterable[tuple[int, float, float]]) -> Series:
+        """``sum a cos(n s) + b sin(n s)`` over (n, a, b), of ``s = sum ratio value`` of joints; (T, 1, 1).
+
+        Raises:
+            NoFourierForm: a frequency is no whole multiple of those of the tree.
+        """
+        n, (rows, ratios) = self.tree.n, zip(*((self.tree.rows[name], ratio) for name, ratio in terms), strict=True)
+        turn = np.array(ratios) @ self.tree.C[list(rows)] * self.denominators
+        whole = np.rint(turn)
+        if np.abs(turn - whole).max(initial=0) > 1e-12 * (1 + np.abs(turn).max(initial=0)):
+            raise NoFourierForm("a cam's joints have ratios that its Fourier form cannot hold")
+        phase, parts = float(np.array(ratios) @ self.tree.s0[list(rows)]), []
+        for times, a, b in amplitudes:
+            keys = np.zeros((2, 2 * n), np.int32)
+            keys[0, :n] = times * whole
+            keys[1] = -keys[0]
+            half = 0.5 * (a - 1j * b) * np.exp(1j * times * phase)
+            parts.append(Series(keys, np.array([half, half.conjugate()])[:, None, None]))
+        return Series.sum(parts)
+
     def _sum(self, parts: list[Series], V: dict[int, Series]) -> Series:
         if not parts:
             return self.constant(np.zeros((1, 1)))

@@ -70,6 +70,13 @@ def _run(program: Program, q: NDArray[Any], r: NDArray[Any]) -> None:
                 np.sqrt(r[a], out=r[to])
             case trace.SHARE:
                 r[to] = np.where(r[a] > 0, 1 - k / r[a], 0.0)
+            case trace.CLAMP:
+                np.subtract(r[a], k, out=scratch)
+                np.clip(scratch, 0.0, m, out=r[to])
+            case trace.STEP:
+                r[to] = r[a] > 0
+            case trace.INVERSE:
+                r[to] = np.where(r[a] > 0, 1 / r[a], 0.0)
             case trace.INPUT:
                 r[to] = q[int(k)]
             case trace.SINCOS:

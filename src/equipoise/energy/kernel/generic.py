@@ -10,7 +10,27 @@ import numpy as np
 
 from ...model.compiled import Compiled
 from . import sines, trace
-from .trace import ADD, ADDK, FMA, FMAK, FMAM, FMS, FMSK, FNM, INPUT, MUL, MULK, SHARE, SINCOS, SQRT, SUB, Program
+from .trace import (
+    ADD,
+    ADDK,
+    CLAMP,
+    FMA,
+    FMAK,
+    FMAM,
+    FMS,
+    FMSK,
+    FNM,
+    INPUT,
+    INVERSE,
+    MUL,
+    MULK,
+    SHARE,
+    SINCOS,
+    SQRT,
+    STEP,
+    SUB,
+    Program,
+)  # fmt: skip
 
 LANES = 128  # poses in a block: their registers stay in the second cache, most of them in the first
 
@@ -32,6 +52,7 @@ def interpret(code, to, a, b, c, k, m, outputs, sign, q, registers, out):
     N = q.shape[1]
     far = 0.0
     size = np.empty(lanes, registers.dtype)
+    ZERO, ONE = registers.dtype.type(0), registers.dtype.type(1)
     for start in range(0, N, lanes):
         width = min(lanes, N - start)
         size[:] = 0.0
@@ -101,6 +122,15 @@ def interpret(code, to, a, b, c, k, m, outputs, sign, q, registers, out):
             elif op == SHARE:
                 for j in range(lanes):
                     y[j] = 1 - K / x[j] if x[j] > 0 else 0.0
+            elif op == CLAMP:
+                for j in range(lanes):
+                    y[j] = min(max(x[j] - K, ZERO), M)
+            elif op == STEP:
+                for j in range(lanes):
+                    y[j] = ONE if x[j] > 0 else ZERO
+            elif op == INVERSE:
+                for j in range(lanes):
+                    y[j] = ONE / x[j] if x[j] > 0 else ZERO
         for j in range(width):
             far = max(far, np.float64(size[j]))
             size[j] *= 0.0  # NaN where the input is no finite number

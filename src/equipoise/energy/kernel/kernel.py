@@ -59,13 +59,16 @@ class Kernel:
     A pose with a coordinate that is not finite is NaN in everything.
 
     Raises:
-        UnsupportedError: the mechanism has loops.
+        UnsupportedError: the mechanism has loops, or a cable on a pulley.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
         tree = Tree.of(mechanism)
         if isinstance(tree, Linkage):
             raise UnsupportedError(f"mechanism '{mechanism.name}' has loops: the kernel covers trees")
+        for spring in mechanism.springs:
+            if not spring.compiled:
+                raise UnsupportedError(f"'{spring.name}' lies on a pulley: the kernel covers straight cables")
         self.mechanism, self.tree = mechanism, tree
         self._total, self._split = _Code(tree, False), _Code(tree, True)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from . import sines, trace
 
 BINARY = {trace.ADD: "fadd", trace.SUB: "fsub", trace.MUL: "fmul", trace.ADDK: "fadd", trace.MULK: "fmul"}
@@ -114,11 +116,26 @@ class Lanes:
             case trace.SQRT:
                 kind = f"v{self.lanes}f{32 if self.single else 64}"
                 return self.new(f"call {real} @llvm.sqrt.{kind}({real} {a})")
+            case trace.CLAMP:
+                above = self._positive(a := self.new(f"fsub {real} {a}, {self.splat(k)}"), a)
+                if m == inf:
+                    return above
+                most = self.splat(m)
+                within = self.new(f"fcmp olt {real} {above}, {most}")
+                return self.new(f"select <{self.lanes} x i1> {within}, {real} {above}, {real} {most}")
+            case trace.STEP:
+                return self._positive(a, self.splat(1.0))
+            case trace.INVERSE:
+                return self._positive(a, self.new(f"fdiv {real} {self.splat(1.0)}, {a}"))
         # what is left is trace.SHARE
         ratio = self.new(f"fdiv {real} {self.splat(k)}, {a}")
         share = self.new(f"fsub {real} {self.splat(1.0)}, {ratio}")
-        some = self.new(f"fcmp ogt {real} {a}, zeroinitializer")
-        return self.new(f"select <{self.lanes} x i1> {some}, {real} {share}, {real} zeroinitializer")
+        return self._positive(a, share)
+
+    def _positive(self, a: str, value: str) -> str:
+        """The value where a is more than 0, else 0."""
+        some = self.new(f"fcmp ogt {self.real} {a}, zeroinitializer")
+        return self.new(f"select <{self.lanes} x i1> {some}, {self.real} {value}, {self.real} zeroinitializer")
 
     def sincos(self, x: str) -> tuple[str, str]:
         wide = self.wide

@@ -8,6 +8,7 @@ and right angles cost nothing.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 
@@ -17,9 +18,11 @@ Value = float | int
 Vector = tuple[Value, Value, Value]
 
 # codes of a program's operations on registers a, b, c and constants k, m
-ADD, SUB, MUL, ADDK, MULK, FMA, FMS, FNM, FMAK, FMSK, FMAM, SQRT, SHARE, INPUT, SINCOS = range(15)
+(ADD, SUB, MUL, ADDK, MULK, FMA, FMS, FNM, FMAK, FMSK, FMAM, SQRT, SHARE, INPUT, SINCOS, CLAMP, STEP,
+ INVERSE) = range(18)  # fmt: skip
 MEANING = ("a+b", "a-b", "a*b", "a+k", "a*k", "a*b+c", "a*b-c", "c-a*b", "a*k+c", "a*k-c", "a*k+m",
-           "sqrt(a)", "a>0 ? 1-k/a : 0", "input k", "sin, cos of a")  # fmt: skip
+           "sqrt(a)", "a>0 ? 1-k/a : 0", "input k", "sin, cos of a", "min(max(a-k, 0), m)", "a>0 ? 1 : 0",
+           "a>0 ? 1/a : 0")  # fmt: skip
 _SIN, _COS = 100, 101
 
 
@@ -106,6 +109,26 @@ class Trace:
             return 1 - free / length if length > 0 else 0.0
         return self._node(SHARE, length, free)
 
+    def clamp(self, a: Value, low: float, width: float = inf) -> Value:
+        """``min(max(a - low, 0), width)``: how far a has come through an interval."""
+        if isinstance(a, float):
+            return min(max(a - low, 0.0), width)
+        return self._node(CLAMP, self._positive(a), low, width)
+
+    def step(self, a: Value) -> Value:
+        """1 where a is more than 0, else 0."""
+        return float(a > 0) if isinstance(a, float) else self._node(STEP, self._positive(a))
+
+    def inverse(self, a: Value) -> Value:
+        """``1/a`` where a is more than 0, else 0."""
+        if isinstance(a, float):
+            return 1 / a if a > 0 else 0.0
+        return self._node(INVERSE, self._positive(a))
+
+    def _positive(self, a: int) -> int:
+        """A node for a value, which may be the negative of one."""
+        return a if a > 0 else self._node(MULK, -a, -1.0)
+
     def total(self, values: Sequence[Value]) -> Value:
         """The sum, a constant first: it then costs nothing beside a product."""
         found: Value = 0.0
@@ -152,7 +175,7 @@ class Program:
     @property
     def cost(self) -> int:
         """Operations of a vector machine without counting sines, inputs and what is fused."""
-        divisions = np.isin(self.code, (SQRT, SHARE)).sum()
+        divisions = np.isin(self.code, (SQRT, SHARE, INVERSE)).sum()
         return int((~np.isin(self.code, (INPUT, SINCOS))).sum() + 15 * divisions)
 
 
@@ -192,6 +215,8 @@ class _Emitter:
             code, operands, k, m = key[0], tuple(self._operands(node)), 0.0, 0.0
             if code in (MULK, ADDK, SHARE, INPUT):
                 k = float(key[-1])
+            elif code == CLAMP:
+                k, m = key[2], key[3]
             if code in (ADD, SUB):
                 x, y = key[1], key[2]
                 product = y if self._fusable(y) else x if self._fusable(x) else None

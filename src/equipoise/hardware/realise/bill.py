@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ...balance import Balance, SpringUse, judged
+from ...balance import Balance, judged
+from ...energy.spring_use import SpringUse
 from ...io import Source
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, nearest

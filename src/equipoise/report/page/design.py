@@ -11,12 +11,13 @@ from typing import Any
 from ..._version import __version__
 from ...balance import Balance
 from ...energy.exactness import EXACT
+from ...energy.spring_use import SpringUse
 from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses
 from ...synthesis.fewest import fewest
 from ..schematic import symbols
-from ..text import percent, torque
+from ..text import percent, reached, torque
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 
@@ -25,6 +26,8 @@ HEADS = {
     "rad": ("k [N m/rad]", "relaxed at [deg]", "least [deg]", "largest [deg]", "largest torque [N m]"),
 }
 """Columns of a table of springs whose path is a length, or an angle."""
+STRENGTHS = {"m": "N/m", "rad": "N m/rad"}
+"""The unit of their first numbers."""
 CONVENTIONS = (
     "A holding torque is what a joint has to supply to keep a pose: the derivative of the potential energy by its "
     "coordinate.",
@@ -55,15 +58,23 @@ def _springs_table(balance: Balance, unit: str) -> Table | None:
     letters = symbols(balance.mechanism, "k")
     for i, (spring, use) in enumerate(zip(balance.mechanism.springs, balance.use, strict=True)):
         if spring.path_unit == unit:
-            strength, most = spring.strength[0], max(map(abs, use.force))
+            (strength, of), most = spring.strength, max(map(abs, use.force))
+            own = "" if of == STRENGTHS[unit] else f" {of}"  # a stiffness stands below its unit, a force brings its own
+            free = "–" if spring.free is None else show(spring.free)
             rows.append(
                 (
-                    spring.name, letters[i], Number(strength, f"{strength:.5g}"),
-                    *map(show, (spring.free, *use.path)), Number(most, f"{most:.4g}"),
+                    spring.name, letters[i], Number(strength, f"{strength:.5g}{own}"), free, *map(show, use.path),
+                    Number(most, f"{most:.4g}"), _states(use, unit),
                 )
             )  # fmt: skip
     title = "Springs, and how they are used over all poses looked at"
-    return Table.of(title, ("spring", "", *HEADS[unit]), rows) if rows else None
+    if not any(row[-1] for row in rows):
+        return Table.of(title, ("spring", "", *HEADS[unit]), [row[:-1] for row in rows]) if rows else None
+    return Table.of(title, ("spring", "", *HEADS[unit], "slack, or past a limit"), rows)
+
+
+def _states(use: SpringUse, unit: str) -> str:
+    return "; ".join(reached(one, unit) for one in use.reached)
 
 
 def _attachments(balance: Balance) -> list[Table]:
