@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from robots import planar_arm
 
 from equipoise.synthesis.convex.blocks import Block
 from equipoise.synthesis.convex.spring_block import SpringBlock, smat, svec
@@ -44,3 +45,19 @@ def test_parts_in_their_regions_lie_in_the_cones_and_others_do_not():
         assert (limits.F @ BALL_AND_BOX.part(np.array([far]))[0] < 0).sum() == 1
     corner = BALL_AND_BOX.part(np.array([[0.0, 0, 0, 1, 1, 1]]))[0]
     assert (limits.F @ corner >= 0).all()  # a box, not a ball
+
+
+@pytest.mark.parametrize("shape", ["ball", "box"])
+def test_no_end_lies_outside_its_region_rounding_included(shape):
+    rng = np.random.default_rng(4)
+    arm = planar_arm([1.0], [0.4], [0.2])
+    for _ in range(300):
+        centre, size = rng.uniform(-2, 2, 3), float(np.exp(rng.uniform(-4, 1)))
+        half = np.full(3, size) if shape == "ball" else size * rng.integers(0, 2, 3) * rng.uniform(0.1, 1, 3)
+        region = Region(tuple(centre.tolist()), tuple(half.tolist()), shape)
+        block = SpringBlock("world", "link2", region, region)
+        u = block.project(5 * rng.normal(size=(1, 6)) * rng.integers(0, 2, 6))[0]
+        (spring,) = block.add(arm, 100.0, u).springs
+        off = np.abs(np.array([spring.p_a, spring.p_b]) - centre)
+        assert (np.linalg.norm(off, axis=1) <= size).all() if shape == "ball" else (off <= half).all()
+        np.testing.assert_allclose(off, half * np.abs(u.reshape(2, 3)), rtol=1e-12, atol=1e-13)

@@ -16,6 +16,7 @@ from ..model.units import Amount, quantity
 Shape = Literal["ball", "box"]
 SHAPES: tuple[Shape, ...] = ("ball", "box")
 EXTREME = 1e6  # regions so much smaller or larger than the mechanism are beyond double precision
+ROUNDING = 4 * np.finfo(float).eps
 RIM = 1 - 1e-12  # in a region's own coordinates: on its boundary
 
 
@@ -61,6 +62,12 @@ class Region:
         L = np.diag([*self.half, 1.0])
         L[:3, 3] = self.centre
         return L
+
+    def inside(self, u: Array) -> Array:
+        """(3,) [m] where u (3,), a point of the unit ball or box, is in the body's frame, not outside by rounding."""
+        centre, half = np.array(self.centre), np.array(self.half)
+        away = np.abs(centre) if self.shape == "box" else np.full(3, np.abs(centre).max())
+        return centre + u * np.maximum(half - ROUNDING * (half + away), 0.0)
 
     def check(self, body: str, reach: float) -> None:
         """Whether its size is in proportion to a mechanism of this reach [m].

@@ -10,6 +10,7 @@ from warnings import warn
 import numpy as np
 
 from ...balance import check
+from ...kinematics import Tree
 from ...model.errors import EquipoiseError, EquipoiseWarning, InfeasibleError, InputError
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
@@ -185,8 +186,9 @@ def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
     missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
     missing = sorted(missing, key=mounts.apart)[:REMEDIES]
     wider = problem.with_pairs([*(pair for pair in problem.pairs if pair in own), *missing])
-    if not reduced.averaged:  # exact balance at a few hundred random poses is exact balance
-        wider = replace(wider, samples=FEW)
+    # exact balance within joint ranges, or at a few hundred random poses, is exact balance everywhere
+    whole = reduced.averaged and Tree.of(problem.judged).turns.all()
+    wider = wider.with_poses(unlimited=True) if whole else replace(wider, samples=FEW)
     wide = build(wider)
     number = {block.place: i for i, block in enumerate(wide.blocks)}
     unit = reduced.unbalanced

@@ -156,8 +156,8 @@ class SpringBlock(Block):
     def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
         taken = {spring.name for spring in mechanism.springs}
         name = next(name for i in range(1, len(taken) + 2) if (name := f"spring {i}") not in taken)
-        p_a, p_b = at_ends(self.lift @ self._y(u[None])[0])
-        spring = Spring(name, self.body_a, vec3(p_a), self.body_b, vec3(p_b), k)
+        p_a, p_b = vec3(self.region_a.inside(u[:3])), vec3(self.region_b.inside(u[3:]))
+        spring = Spring(name, self.body_a, p_a, self.body_b, p_b, k)
         return mechanism.with_springs((*mechanism.springs, spring))
 
     def enlarged(self, factor: float) -> tuple[SpringBlock, Array]:
