@@ -152,7 +152,7 @@ def test_stiff_springs_that_cancel_hide_nothing(k: float) -> None:
 
 def test_what_has_no_proof() -> None:
     with pytest.raises(NoFourierForm, match="spring 'shoulder spring' has a free length"):
-        SpanEnergy(pendulum(free_length=0.1))
+        _ = SpanEnergy(pendulum(free_length=0.1)).distance
     with pytest.raises(NoFourierForm, match="is not a fraction"):
         SpanEnergy(three(("a", float(np.sqrt(2)))))
 

@@ -23,11 +23,12 @@ class SpanEnergy:
     """What decides whether the energy of a mechanism is constant.
 
     Attributes:
-        distance: from exact.
+        distance: from exact; it asks the springs, and NoFourierForm is raised where one has no such form: one with a
+            free length, a cam.
 
     Raises:
-        NoFourierForm: it has loops, a spring has a free length, a coupling ratio is not a fraction, or couplings join
-            too many joints far from each other.
+        NoFourierForm: it has loops, a coupling ratio is not a fraction, or couplings join too many joints far from each
+            other.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -36,9 +37,13 @@ class SpanEnergy:
         self._g = np.array(mechanism.gravity)
         one = self.nodes.zero()
         points = [m * self.nodes.point(tree.index[body], p) for body, m, p in lumped_masses(mechanism) if m]
-        stretches = [element.affine(self.nodes) for element in mechanism.springs]
         self._moments = np.reshape(points, (-1, *one.shape)) * self.nodes.reach[:, None]
-        self._stretches = np.reshape(stretches, (-1, *one.shape)) * self.nodes.reach[:, None]
+
+    @cached_property
+    def _stretches(self) -> Array:
+        """(springs, nodes, 1 + slides, 3); only asked for where springs matter, for not every kind has one."""
+        stretches = [element.affine(self.nodes) for element in self.nodes.tree.mechanism.springs]
+        return np.reshape(stretches, (-1, *self.nodes.zero().shape)) * self.nodes.reach[:, None]
 
     @property
     def exact(self) -> bool:
