@@ -41,7 +41,7 @@ def main() -> None:
         if not np.abs(found - expected).max() < 1e-10 * np.abs(expected).max():
             raise SystemExit(f"{name} disagrees with the slow sum")
         tasks.append(partial(kernel, q, out=kernel.room(POSES), tier="generated"))
-    times = measure.seconds(*tasks, best=True)
+    times = measure.seconds(*tasks, repeat=40, best=True)
     for name, seconds in zip(robots, times, strict=True):
         print(f"{name:20} {POSES / seconds / 1e6:6.1f} M poses/s  {times[0] / seconds:5.2f} of zero free length")
 

@@ -90,22 +90,18 @@ class GuideItem(Item):
 
 
 class LawItem(Item):
-    """What every kind has: a name, and numbers of its law."""
+    """What every kind has: a name, numbers of its law, and `element`, which makes it."""
 
     law: ClassVar[type[Law]]
     name: Text
     kind: Kind = Linear.kind
 
-    def element(self, folder: FilePath) -> Element:
-        """The element; a table's file is relative to the folder of the mechanism file.
+    def made(self, folder: FilePath, path: dict[str, str]) -> Law:
+        """Its law; the file of a table is relative to the folder of the mechanism file.
 
         Raises:
             InputError: a table's file cannot be read.
         """
-        raise NotImplementedError
-
-    def made(self, folder: FilePath, path: dict[str, str]) -> Law:
-        """Its law."""
         values = {f.name: getattr(self, f.name) for f in fields(self.law)}
         if (file := getattr(self, "file", None)) is not None:
             if values["points"]:
