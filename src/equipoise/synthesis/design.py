@@ -87,7 +87,7 @@ class Design(Shown):
         unbalanced: [N m] torque without the springs.
         bound: [N m] no springs on the allowed pairs and regions can leave less; None for methods without one.
         joints: the coordinates that count, None for all.
-        averaged: whether these are exact averages over all configurations, or over random poses.
+        averaged: whether these are exact averages, over all poses inside the joint ranges, or over random poses.
         samples: the number of random poses, None when the averages are exact.
         free_parameters: the options the method was called with.
         exact_feasible: whether springs on the pairs can balance exactly, None when it is not known.

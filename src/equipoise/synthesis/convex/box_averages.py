@@ -18,7 +18,7 @@ from ...kinematics.sampling import bounds
 from ...kinematics.tree import Tree
 from ...model.arrays import Array, Complexes, Integers
 
-MOST = 20_000  # terms of one series
+MOST = 20_000  # terms of one series up to which this is quicker than samples
 POINTS, POINTS_PER_RADIAN = 24, 1.0  # of the quadrature; the second times range and frequency
 
 
@@ -34,7 +34,7 @@ def is_box(tree: Tree) -> bool:
 
 def mean_products(
     tree: Tree, denominators: Integers, parts: Sequence[Series], loads: int, scale: Array
-) -> tuple[Array, Array] | None:
+) -> tuple[Array, Array]:
     """Rows of which the squares sum to mean square torques, and the mean energies.
 
     Args:
@@ -44,10 +44,8 @@ def mean_products(
 
     Returns:
         (rows, all columns): ``|rows @ x|^2`` is the mean over the box of the summed squares of the torques times
-        `scale` that x times the energies give; and (all columns,) the means of the energies. None when it is too long.
+        `scale` that x times the energies give; and (all columns,) the means of the energies.
     """
-    if max(len(part) for part in parts) > MOST:
-        return None
     n, ends = tree.n, np.cumsum([0, *(part.coef.shape[1] for part in parts)])
     torques = [[_derivative(part, j, denominators) for part in parts] for j in range(n)]
     bases = _bases(tree, denominators, [*parts, *(one for each in torques for one in each)])

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...energy.evaluate import Potential
 from ...energy.fourier.energy import gravity_series
-from ...energy.fourier.frames import Frames
+from ...energy.fourier.frames import MAX_TERMS, Frames, denominators
 from ...energy.fourier.series import Series
 from ...energy.reference import CHUNK_ENTRIES
 from ...kinematics import Tree, sample
@@ -27,7 +27,7 @@ from ...model.mechanism import Mechanism
 from ...model.progress import Progress
 from ..problem import Problem
 from .blocks import Block
-from .box_averages import is_box, mean_products
+from .box_averages import MOST, is_box, mean_products
 
 RANK = 1e-12  # singular values below this share of the largest are rounding
 
@@ -166,18 +166,18 @@ def _averages(problem: Problem, loaded: Sequence[Mechanism]) -> tuple[Array, Arr
     blocks = problem.blocks
     tree = Tree.of(loaded[0])
     try:
-        every = [Frames(Tree.of(mechanism)) for mechanism in loaded]
-        frames = every[0]
-        whole = whole_turns(tree, frames.denominators)
+        whole = whole_turns(tree, denominators(tree))
         if not (whole or is_box(tree)):
             return None
+        every = [Frames(Tree.of(mechanism), MAX_TERMS if whole else MOST) for mechanism in loaded]
+        frames = every[0]
         loads = [_load(own) for own in every]
         forms = [*(block.series(frames) for block in blocks), *loads]
     except NoFourierForm:
         return None
     if not whole or any(form.keys[:, tree.n :].any() for form in forms):
         found = mean_products(tree, frames.denominators, forms, len(loads), problem.scale)
-        return None if found is None else (_triangle(found[0]), found[1][: -len(loads)])
+        return _triangle(found[0]), found[1][: -len(loads)]
     keys, inverse = np.unique(np.concatenate([s.keys for s in forms]), axis=0, return_inverse=True)
     places = _places([*(block.unknowns for block in blocks), *(1 for _ in loads)])
     A: Complexes = np.zeros((len(keys), places[-1].stop), complex)
