@@ -122,6 +122,33 @@ def spatial_parallelogram() -> Mechanism:
     return Mechanism("spatial parallelogram", bodies, joints, loops=(loop,), springs=(spring,))
 
 
+def rod_leg() -> Mechanism:
+    """A knee that a crank drives through a rod, three hinges at each end of it, on a hip; open at zero, no ranges.
+
+    The rod's spin matters to nothing; the crank turns as far as the rod reaches.
+    """
+    bodies = (
+        Body("thigh", 7.2, (0.02, 0, -0.15)),
+        Body("crank", 0.6, (0.02, 0, 0)),
+        Body("shin", 3.4, (0, 0, -0.2)),
+        *(Body(name) for name in ("upper x", "upper y", "lower x", "lower y", "end")),
+        Body("rod", 0.44, (0, 0, -0.15)),
+    )
+    joints = [hinge("hip", "world", "thigh")]
+    joints += [
+        Joint(name, "revolute", "thigh", name, (0, 0, z), axis=LIFT) for name, z in (("crank", -0.1), ("shin", -0.4))
+    ]
+    for place, parent, last in (("upper", "crank", "rod"), ("lower", "shin", "end")):
+        chain = (parent, f"{place} x", f"{place} y", last)
+        for i, axis in enumerate(np.eye(3).tolist()):
+            at = (0.06, 0.02, 0.0) if i == 0 else (0.0, 0.0, 0.0)
+            name = f"{place} {'xyz'[i]}"
+            joints.append(Joint(name, "revolute", chain[i], chain[i + 1], at, axis=(axis[0], axis[1], axis[2])))
+    side = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
+    loops = tuple(Loop("rod", (x, y, -0.25), "end", (x, y, 0.0)) for x, y, _ in side)
+    return Mechanism("leg with a rod", bodies, tuple(joints), loops=loops)
+
+
 def gough_stewart() -> Mechanism:
     """Six legs of a hinge, a hinge and a strut, on ball joints under the platform; the struts are the actuators.
 
@@ -179,6 +206,7 @@ LOOPED: dict[str, Callable[[], Mechanism]] = {
     "parallelogram": spatial_parallelogram,
     "RSSR": EXAMPLES.rssr,
     "DELTA": delta,
+    "rod leg": rod_leg,
     "Gough-Stewart": gough_stewart,
     "hexapod": EXAMPLES.hexapod,
 }

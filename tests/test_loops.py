@@ -121,6 +121,7 @@ def test_torque_is_the_derivative_of_the_energy_along_closed_motions(name):
         ("four-bar", -2, 1),  # 3 - 5
         ("slider-crank", 0, 1),  # 3 - 3
         ("parallelogram", -2, 1),
+        ("rod leg", 0, 3),  # 9 - 9: hip, crank and the spin of the rod
         ("RSSR", 4, 4),  # 10 - 6: two active, two idle
         ("DELTA", -9, 3),  # 16 - 25
         ("Gough-Stewart", 6, 6),  # 21 - 15
@@ -333,6 +334,48 @@ def test_a_singular_pose_is_reported():
     assert np.isnan(Potential(tree.mechanism)(np.array([[dead]])).torque).all()
     assert status[3] == Status.CLOSED
     assert Status.CLOSED in status[1:3]
+
+
+def test_a_rod_leg_reaches_what_its_geometry_allows():
+    """The two ends of the rod on their circles about -y: the crank's pin is reached by a rod of 0.25 m, or is not."""
+    tree = linkage("rod leg")
+    assert tree.coordinates == ("hip", "crank", "upper z")
+    u = np.column_stack([np.zeros(400), np.linspace(-2.8, 2.8, 400), np.zeros(400)])  # beyond is a part of its own
+    crank = u[:, 1]
+    pin = np.column_stack([0.06 * np.cos(crank), np.full(400, 0.02), 0.06 * np.sin(crank) - 0.1])
+    shin = np.linspace(-pi, pi, 4001)
+    end = np.column_stack([0.06 * np.cos(shin), np.full(4001, 0.02), 0.06 * np.sin(shin) - 0.4])
+    apart = np.linalg.norm(pin[:, None] - end, axis=2)
+    reached = (apart.min(axis=1) < 0.25 - 1e-4) & (apart.max(axis=1) > 0.25 + 1e-4)
+    never = (apart.min(axis=1) > 0.25 + 1e-4) | (apart.max(axis=1) < 0.25 - 1e-4)
+    status = tree.status(u)
+    assert 50 < reached.sum() < 350
+    assert (status[reached] == Status.CLOSED).all()
+    assert (status[never] != Status.CLOSED).all()
+
+
+def test_what_is_beside_singular_poses_is_left_out_of_a_verdict():
+    """Where the rod's ends are as far apart as they can be, the crank's torque grows without a bound."""
+    first, second = (check(LOOPED["rod leg"](), samples=500, seed=seed) for seed in (0, 1))
+    for balance in (first, second):
+        assert balance.singular is not None
+        assert balance.certificate.samples == 500 - balance.singular.left_out
+        assert balance.to_dict()["singular"]["nearer"] == balance.singular.nearer
+        tree = linkage("rod leg")
+        assert isinstance(tree, Linkage)
+        assert tree.close(balance.singular.configuration[None])[0][0] > balance.singular.nearer
+        assert tree.close(balance.worst_configuration[None])[0][0] <= balance.singular.nearer
+        assert not balance.singular.passed
+    np.testing.assert_allclose(first.residual.max, second.residual.max, rtol=0.2, atol=1e-6)
+    assert check(four_bar(), samples=100).singular is None
+
+
+def test_a_change_point_that_relations_lead_through_is_named_and_nothing_left_out():
+    balance = check(replace(spatial_parallelogram(), joints=unlimited(spatial_parallelogram())), samples=500)
+    assert balance.singular is not None
+    assert balance.singular.passed
+    assert balance.singular.left_out == 0
+    assert balance.certificate.samples == 500
 
 
 def unlimited(mechanism: Mechanism) -> tuple:

@@ -47,7 +47,7 @@ def test_a_parallelogram_stays_one_beyond_where_it_folds():
     assert (status == Status.CLOSED).all()
     at = [tree.open.coordinates.index(name) for name in ("crank", "coupler", "rocker")]
     np.testing.assert_allclose(full[:, at], np.column_stack([angles, -angles, angles]), atol=1e-12)
-    np.testing.assert_allclose(tree.branch.rates(full, tree.open.poses(full))[:, at, 0], np.tile([1, -1, 1], (64, 1)))
+    np.testing.assert_allclose(tree.branch.rates(full)[:, at, 0], np.tile([1, -1, 1], (64, 1)))
     assert tree.branch.solve(np.array([[0.0], [np.pi]]))[1].tolist() == [Status.SINGULAR, Status.SINGULAR]
 
 

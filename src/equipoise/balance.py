@@ -21,6 +21,7 @@ from .energy.fourier.frames import MAX_TERMS
 from .energy.reference import State
 from .io import Source, loaded
 from .kinematics import Linkage, Mobility, Tree, sample
+from .kinematics.singular import Avoided, Singular
 from .model.arrays import Array, frozen
 from .model.coordinate import Coordinate
 from .model.elements import Element
@@ -100,6 +101,7 @@ class Balance(Shown):
         worst_configuration: (n,) the pose of the largest residual torque [rad or m].
         worst_torque: (n,) the torque there [N m or N].
         use: of each spring, how long it gets and how hard it pulls.
+        singular: a singular pose of its loops inside the ranges, if one was met.
     """
 
     mechanism: Mechanism
@@ -115,6 +117,7 @@ class Balance(Shown):
     worst_configuration: Array
     worst_torque: Array
     use: tuple[SpringUse, ...]
+    singular: Singular | None = None
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -152,6 +155,7 @@ class Balance(Shown):
             "mechanism": self.mechanism.name,
             "coordinates": list(coordinates),
             "mobility": None if self.mobility is None else asdict(self.mobility),
+            "singular": None if self.singular is None else self.singular.to_dict(),
             "exact": self.exact,
             "certificate": {
                 "kind": self.certificate.kind,
@@ -198,7 +202,8 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
     held = 2 * (3 * tree.n + 2 * len(mechanism.springs) + 6)  # numbers for each sample
     whole_number("samples", samples, 1, min(MAX_SAMPLES, MAX_NUMBERS // held))
     whole_number("seed", seed, 0)
-    q = sample(tree, samples, seed)
+    singular = Avoided(tree)
+    q = singular.without(sample(tree, samples, seed))
     potential = Potential(mechanism)
     state = potential(q)
     series, reason = fourier_form(mechanism, max_terms)
@@ -208,7 +213,7 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
         sums = np.stack([s.gravity, s.springs.sum(axis=1), s.energy], axis=1)
         return np.hstack([np.abs(s.gravity_torque), np.abs(s.torque), sums, -sums, s.path, -s.path])
 
-    best, best_q = climb(tree, lambda x: quantities(potential(x)), q, seed)
+    best, best_q = climb(tree, lambda x: singular.nowhere(x, quantities(potential(x))), q, seed)
     n, m = tree.n, len(mechanism.springs)
     unbalanced, residual, top, low, longest, shortest = np.split(best, np.cumsum([n, n, 3, 3, m]))
     worst = best_q[n + int(residual.argmax())] if n else q[0]
@@ -236,6 +241,7 @@ def check(mechanism: Source, *, samples: int | None = None, seed: int = 0, max_t
             SpringUse((-float(minus), float(up)), spring.law.extremes(-float(minus), float(up)))
             for spring, up, minus in zip(mechanism.springs, longest, shortest, strict=True)
         ),
+        singular=singular.found(samples - len(q)),
     )
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError
 from .closure import Closure
-from .continuation import CLOSED, Split
+from .continuation import Split
+from .tolerances import CLOSED
 from .tree import Tree
 
 STARTS = 40  # random ones, when the guess does not lead to a closed pose

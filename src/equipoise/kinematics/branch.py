@@ -7,23 +7,25 @@ on through the poses where it folds, and no path strays into the other branch th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import IntEnum
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..model.arrays import Array, Booleans, Integers, frozen
+from ..model.arrays import Array, Integers
 from ..model.mechanism import SINGLE, Body, Coupling, Mechanism
 from . import assembly
 from .closure import Closure
-from .continuation import SHORTEST, follow, tangent
+from .continuation import Closed, follow, tangents
 from .relations import relations
 from .sampling import bounds, inside
-from .tree import Poses, Tree
+from .tolerances import SHORTEST
+from .tree import Tree
 
 NEARBY = 0.05  # [rad, or share of the size] from the assembly pose, where relations are looked for
+NOTHING = 1e-12  # a smaller derivative of the loop equations is rounding
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
 WAYPOINTS = 512  # goals of a round
 FLOODS = 4  # each in the box of what the last has reached
@@ -34,7 +36,7 @@ FLOOD = 3  # nearest reached waypoints that a goal is tried from
 COARSE = (
     0.02  # [rad, or share of the size] shortest step but from the nearest waypoint: it ends far from singular poses
 )
-BATCH_ENTRIES = 8_000_000  # velocities of the poses that are followed together: few of them need the last steps
+DISTANCES = 4_000_000  # between poses and waypoints, held at a time
 REMEMBERED = 131_072  # poses
 
 
@@ -46,15 +48,6 @@ class Status(IntEnum):
     SINGULAR = 2
 
 
-@frozen
-class Waypoints:
-    """Closed poses `q` (K, n) with the tangents `T` (K, d, m) and Jacobians `J` (K, count, n) there."""
-
-    q: Array
-    T: Array
-    J: Array
-
-
 class Branch:
     """The closed poses of a mechanism. Make it with `Branch.of`: springs, masses and gravity make no difference.
 
@@ -62,7 +55,8 @@ class Branch:
         open: the spanning tree, loops ignored.
         assembled: (open.n,) the closed pose that all others are reached from.
         mobility: how many ways the mechanism can move.
-        within: the branch of the mechanism with the relations as couplings; None where there are none.
+        within: the branch of the mechanism with the relations as couplings, in the coordinates `kept` of this one; None
+            where there are none.
         split: which coordinates of the spanning tree are independent.
 
     Raises:
@@ -88,9 +82,9 @@ class Branch:
                 independent=tuple(names[j] for j in self.split.independent),
                 assembly=tuple((name, start[name]) for name in kept),
             ))  # fmt: skip
-            self._kept = [names.index(name) for name in kept]
+            self.kept = [names.index(name) for name in kept]
             self._spread, self._offset = np.zeros((len(names), len(kept))), np.zeros(len(names))
-            self._spread[self._kept, range(len(kept))] = 1.0
+            self._spread[self.kept, range(len(kept))] = 1.0
             for one in found:
                 j = names.index(one.joint)
                 self._offset[j] = one.offset
@@ -104,13 +98,12 @@ class Branch:
         if not single & {names[j] for j in self.split.dependent}:
             return
         count = 4 * self.open.n
-        start = self.assembled[None].repeat(count, axis=0)
-        T, condition = tangent(self.closure.at(start)[1], self.split)
-        if condition.max(initial=0) > SINGULAR:
+        start = tangents(self.closure, self.split, self.assembled[None])
+        if start.condition.max(initial=0) > SINGULAR:
             return
         aside = np.random.default_rng(0).uniform(-NEARBY, NEARBY, (count, len(first)))
-        goal = start[:, first] + aside * self.closure.scale[first]
-        q, reached = follow(self.closure, self.split, start, T, self.closure.at(start)[1], goal)
+        goal = self.assembled[first] + aside * self.closure.scale[first]
+        q, reached = follow(self.closure, self.split, start, np.zeros(count, int), goal)
         if reached.sum() > 2 * self.open.n:
             yield from relations(q[reached], [name in single for name in names], names, first)
 
@@ -157,7 +150,7 @@ class Branch:
         near = self._nearest(u, way.q)
         todo = np.flatnonzero(np.isfinite(u).all(axis=1))
         for start in near.T:
-            q, reached = self._follow(way, start[todo], u[todo], SHORTEST)
+            q, reached = follow(self.closure, self.split, way, start[todo], u[todo], SHORTEST)
             full[todo[reached]] = q[reached]
             status[todo[reached]] = Status.CLOSED
             todo = todo[~reached]
@@ -166,59 +159,63 @@ class Branch:
     def _without_singular(self, full: Array, status: Integers) -> tuple[Array, Integers]:
         """Poses and their status where singular ones are none."""
         closed = np.flatnonzero(status == Status.CLOSED)
-        bad = closed[~self._regular(full[closed])]
+        bad = closed[~(tangents(self.closure, self.split, full[closed]).condition < SINGULAR)]
         full[bad], status[bad] = np.nan, Status.SINGULAR
         return full, status
 
-    def rates(self, full: Array, poses: Poses) -> Array:
-        """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n) with their poses; NaN where not closed."""
+    def close(self, full: Array) -> Array:
+        """(N,) how many times nearer to a singular pose than usual `full` (N, open.n) is; 0 where it is not closed.
+
+        By the least change of the loop equations for a unit change of the dependent coordinates: it is nothing at a
+        singular pose, and grows with the distance. Where relations lead through one, it counts nevertheless: ask
+        `within` for those that they do not lead through.
+        """
+        found = np.zeros(len(full))
+        good = np.flatnonzero(~np.isnan(full).any(axis=1))
+        with np.errstate(divide="ignore"):
+            found[good] = self._usual / self._distance(full[good])
+        return found
+
+    def _distance(self, full: Array) -> Array:
+        there = tangents(self.closure, self.split, full)
+        return np.linalg.norm(there.J, axis=(1, 2)) / there.condition
+
+    @cached_property
+    def _usual(self) -> float:
+        """The distance of half of the waypoints."""
+        q = self._waypoints.q if self.within is None else self.within._waypoints.q @ self._spread.T + self._offset
+        return float(np.median(self._distance(q)))
+
+    def rates(self, full: Array) -> Array:
+        """dq/du (N, open.n, m) at closed coordinates `full` (N, open.n); NaN where not closed."""
         if self.within is not None:
-            inner = full[:, self._kept]
-            return self._spread @ self.within.rates(inner, self.within.open.poses(inner))
+            return self._spread @ self.within.rates(full[:, self.kept])
         split, scale = self.split, self.closure.scale
         rates = np.full((len(full), self.open.n, len(split.independent)), np.nan)
         good = np.flatnonzero(~np.isnan(full).any(axis=1))
-        T, _ = tangent(self.closure.jacobian(full, poses)[good], split)
+        T = tangents(self.closure, split, full[good]).T
         rates[good] = 0.0
         rates[np.ix_(good, split.independent)] = np.eye(len(split.independent))
         rates[np.ix_(good, split.dependent)] = T * scale[split.dependent, None] / scale[split.independent]
         return rates
 
-    def _follow(self, way: Waypoints, start: Integers, goal: Array, shortest: float) -> tuple[Array, Booleans]:
-        def part(i: slice) -> tuple[Array, Booleans]:
-            k = start[i]
-            return follow(self.closure, self.split, way.q[k], way.T[k], way.J[k], goal[i], shortest)
-
-        return self._by_parts(part, len(goal), (np.zeros((0, self.open.n)), np.zeros(0, bool)))
-
-    def _regular(self, q: Array) -> Booleans:
-        """(N,) whether closed poses are no singular ones."""
-
-        def part(i: slice) -> tuple[Booleans]:
-            return (tangent(self.closure.at(q[i])[1], self.split)[1] < SINGULAR,)
-
-        return self._by_parts(part, len(q), (np.zeros(0, bool),))[0]
-
-    def _by_parts(self, work: Callable[[slice], tuple], count: int, nothing: tuple) -> tuple:
-        """What `work` returns for `count` poses, a chunk at a time."""
-        size = max(16, BATCH_ENTRIES // (6 * self.open.n * len(self.open.names)))
-        parts = [work(slice(i, i + size)) for i in range(0, count, size)]
-        return tuple(np.concatenate(found) for found in zip(nothing, *parts, strict=True))
-
     def _nearest(self, u: Array, q: Array) -> Integers:
         """(N, k) numbers of the nearest poses of `q` (K, open.n), nearest first."""
-        k = min(ATTEMPTS, len(q))
-
-        def part(i: slice) -> tuple[Integers]:
-            apart = self._apart(u[i], q)
+        k, size = min(ATTEMPTS, len(q)), max(16, DISTANCES // len(q))
+        found = np.zeros((len(u), k), int)
+        for i in range(0, len(u), size):
+            apart = self._apart(u[i : i + size], q)
             near = np.argpartition(apart, k - 1, axis=1)[:, :k]
-            return (np.take_along_axis(near, np.take_along_axis(apart, near, axis=1).argsort(axis=1), axis=1),)
-
-        return self._by_parts(part, len(u), (np.zeros((0, k), int),))[0]
+            order = np.take_along_axis(apart, near, axis=1).argsort(axis=1)
+            found[i : i + size] = np.take_along_axis(near, order, axis=1)
+        return found
 
     def _apart(self, u: Array, q: Array) -> Array:
-        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths."""
-        a, b = u / self._width, q[:, self.split.independent] / self._width
+        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths.
+
+        Of those that matter to the loops: what turns a loop as a whole needs no other start.
+        """
+        a, b = u[:, self._matters] / self._width, q[:, self.split.independent[self._matters]] / self._width
         return np.sqrt(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T, 0.0))
 
     @cached_property
@@ -228,8 +225,14 @@ class Branch:
 
     @cached_property
     def _width(self) -> Array:
-        lower, upper = self._ranges
+        lower, upper = (end[self._matters] for end in self._ranges)
         return np.where(upper > lower, upper - lower, 1.0)
+
+    @cached_property
+    def _matters(self) -> Integers:
+        """Which of the independent coordinates change the loop equations: at random poses, open ones too."""
+        J = self.closure.at(np.random.default_rng(0).uniform(-1, 1, (8, self.open.n)))[1][:, :, self.split.independent]
+        return np.flatnonzero(np.abs(J).max(axis=(0, 1), initial=0) > NOTHING)
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -244,11 +247,11 @@ class Branch:
         if len(q) == 0:
             return lower, upper
         low, high = (f(q[:, self.split.independent], axis=0) for f in (np.min, np.max))
-        margin = MARGIN * np.maximum(high - low, self._width / WAYPOINTS)
+        margin = MARGIN * np.maximum(high - low, (upper - lower) / WAYPOINTS)
         return np.maximum(lower, low - margin), np.minimum(upper, high + margin)
 
     @cached_property
-    def _waypoints(self) -> Waypoints:
+    def _waypoints(self) -> Closed:
         rng = np.random.default_rng(0)
         reached = self._with(None, self.assembled[None])
         box = self._ranges
@@ -260,7 +263,7 @@ class Branch:
                 break
         return reached
 
-    def _flooded(self, reached: Waypoints, goals: Array) -> Waypoints:
+    def _flooded(self, reached: Closed, goals: Array) -> Closed:
         """With what can be reached of the goals, each from the nearest poses that are reached already."""
         tried = np.zeros((len(goals), 0), bool)
         todo = np.arange(len(goals))
@@ -270,20 +273,16 @@ class Branch:
             worth = np.isfinite(apart.min(axis=1)) & (tried[todo].sum(axis=1) < FLOOD)
             todo, start = todo[worth], apart[worth].argmin(axis=1)
             tried[todo, start] = True
-            q, done = self._follow(reached, start, goals[todo], COARSE)
+            q, done = follow(self.closure, self.split, reached, start, goals[todo], COARSE)
             reached = self._with(reached, q[done])
             todo = todo[~done]
         return reached
 
-    def _with(self, way: Waypoints | None, q: Array) -> Waypoints:
+    def _with(self, way: Closed | None, q: Array) -> Closed:
         """With the closed poses `q` added, but for singular ones."""
-        J = self.closure.at(q)[1]
-        T, condition = tangent(J, self.split)
-        good = condition < SINGULAR
-        new = Waypoints(q[good], T[good], J[good])
-        if way is None:
-            return new
-        return Waypoints(*(np.concatenate([a, b]) for a, b in ((way.q, new.q), (way.T, new.T), (way.J, new.J))))
+        new = tangents(self.closure, self.split, q)
+        new = new[new.condition < SINGULAR]
+        return new if way is None else way.with_more(new)
 
 
 @lru_cache(maxsize=8)

@@ -10,13 +10,48 @@ so that no solver turns a hinge round. Everything is dimensionless: lengths are 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..model.arrays import Array, Booleans
+from ..model.arrays import Array, Integers
 from ..model.mechanism import Loop
-from .tree import Poses, Tree
+from .tree import Tree
 
-OPPOSITE = 1e-3  # least 1 + a . b: beyond it the equation of a hinge is continued linearly
+
+class Loops(NamedTuple):
+    """A tree and its loops as arrays, for `closing`.
+
+    Attributes:
+        link: (links, 5) body, parent, base, its first motion and the one after its last; outwards.
+        R0, p0: (links, 3, 3), (links, 3) [m] at zero.
+        row, turns: (motions,) of s, in the links' order; and whether it turns.
+        axis: (motions, 3); turning: (motions, 3, 3, 3) what is constant, times cos and times sin in its rotation.
+        C, s0: s = C q + s0.
+        ends, points: (loops, 2) bodies, (loops, 2, 3) [m] in them.
+        hinge: (hinges,) loops; along: (hinges, 3) axes in body_a; frame: (hinges, 3, 3) rows e, e, b in body_b.
+        scale: (n,) unit of each coordinate; size: [m] unit of lengths.
+        independent, dependent: numbers of coordinates.
+    """
+
+    link: Integers
+    R0: Array
+    p0: Array
+    row: Integers
+    turns: Integers
+    axis: Array
+    turning: Array
+    C: Array
+    s0: Array
+    ends: Integers
+    points: Array
+    hinge: Integers
+    along: Array
+    frame: Array
+    scale: Array
+    size: float
+    independent: Integers
+    dependent: Integers
 
 
 class Closure:
@@ -27,6 +62,7 @@ class Closure:
         size: [m] of the mechanism: what lengths are measured in.
         scale: (n,) unit of each coordinate: 1 rad, or the size for a slide.
         count: the number of equations.
+        table: all of it as arrays for `closing`, no coordinate dependent yet.
     """
 
     def __init__(self, tree: Tree) -> None:
@@ -34,116 +70,59 @@ class Closure:
         self.loops = tree.mechanism.loops
         self.size = _size(tree)
         self.scale = np.where(tree.turns, 1.0, self.size)
-        index = tree.index
-        self._a = np.array([index[loop.body_a] for loop in self.loops])
-        self._b = np.array([index[loop.body_b] for loop in self.loops])
-        self._p_a = np.array([loop.p_a for loop in self.loops], float)
-        self._p_b = np.array([loop.p_b for loop in self.loops], float)
-        hinges = [i for i, loop in enumerate(self.loops) if loop.axis_a is not None]
-        self._hinges = np.array(hinges, int)
-        self._axes_a = np.array([_unit(self.loops[i].axis_a) for i in hinges]).reshape(-1, 3)
-        self._frames_b = np.array([_frame(self.loops[i]) for i in hinges]).reshape(-1, 3, 3)
-        self.count = 3 * len(self.loops) + 2 * len(hinges)
-
-        turning, levers, sliding = _supports(tree)
-        points = len(tree.names) + 2 * len(self.loops)  # the bodies' origins, then p_a and then p_b of all loops
-        lever = np.zeros((len(self.loops), len(tree.motions), points))
-        for i, (A, B) in enumerate(zip(self._a, self._b, strict=True)):
-            for sign, body, point in ((-1, A, i), (1, B, len(self.loops) + i)):
-                lever[i, :, : len(tree.names)] += sign * levers[body]
-                lever[i, turning[body], len(tree.names) + point] += sign
-                lever[i, turning[body], body] -= sign
-        lever = lever.reshape(-1, points)
-        self._turned = np.flatnonzero(lever.any(axis=1))  # loop and motion in one number: where a motion turns an end
-        self._lever = lever[self._turned].T
-        self._slides = sliding[self._b].astype(float) - sliding[self._a]  # (loops, motions)
-        self._turns = (
-            turning[self._a[hinges]].astype(float) - turning[self._b[hinges]]
-        )  # (hinges, motions): a seen by b
-
-    def residual(self, poses: Poses) -> Array:
-        """(N, count) what is left of the equations, as shares of the size."""
-        a, b = self._points(poses)
-        gaps = ((b - a) / self.size).reshape(len(a), 3 * len(self.loops))
-        if not len(self._hinges):
-            return gaps
-        x = self._cosines(*self._axes(poses))
-        tangents = 2 * x[:, :, :2] / np.maximum(1 + x[:, :, 2:], OPPOSITE)
-        return np.hstack([gaps, tangents.reshape(len(a), 2 * len(self._hinges))])
-
-    def jacobian(self, q: Array, poses: Poses) -> Array:
-        """(N, count, n) derivative of the equations by the coordinates in units of `scale`, at `q` with its `poses`."""
-        N, motions = len(q), len(self.tree.motions)
-        axes = np.swapaxes(self.tree.axes(q, poses), 1, 2)
-        points = np.concatenate([np.swapaxes(poses.p, 1, 2), *self._points(poses)], axis=2)
-        lever = (points.reshape(3 * N, len(self._lever)) @ self._lever).reshape(N, 3, len(self._turned))
-        rows = self._slides * axes[:, :, None]  # (N, 3, loops, motions)
-        flat = rows.reshape(N, 3, len(self.loops) * motions)
-        flat[:, :, self._turned] += _cross(axes[:, :, self._turned % motions], lever)
-        J = flat.reshape(N, 3 * len(self.loops), motions) / self.size
-        if len(self._hinges):
-            axis, frame = self._axes(poses)
-            x = self._cosines(axis, frame)
-            across = _cross(axis[:, :, :, None], np.swapaxes(frame, 2, 3), axis=2)
-            rate = (np.swapaxes(across, 2, 3) @ axes[:, None]) * self._turns[:, None]
-            down = np.maximum(1 + x[:, :, 2], OPPOSITE)[:, :, None, None]
-            bent = 2 * rate[:, :, :2] / down - (2 * (down > OPPOSITE) / down**2) * x[:, :, :2, None] * rate[:, :, 2:]
-            J = np.concatenate([J, bent.reshape(N, 2 * len(self._hinges), motions)], axis=1)
-        return J @ (self.tree.C * self.scale)
+        self.hinges = np.array([i for i, loop in enumerate(self.loops) if loop.axis_a is not None], int)
+        self.count = 3 * len(self.loops) + 2 * len(self.hinges)
+        self.table = self._table()
 
     def at(self, q: Array) -> tuple[Array, Array]:
-        """Residual (N, count) and Jacobian (N, count, n) at coordinates `q` (N, n) of the tree."""
-        poses = self.tree.poses(q)
-        return self.residual(poses), self.jacobian(q, poses)
+        """What is left of the equations at coordinates `q` (N, n) of the tree, lengths as shares of the size.
+
+        Returns:
+            (N, count) it, and (N, count, n) its derivative by the coordinates in units of `scale`.
+        """
+        from . import closing
+
+        residual, J = np.empty((len(q), self.count)), np.empty((len(q), self.count, self.tree.n))
+        closing.at(self.table, np.ascontiguousarray(q, float), len(self.tree.names), residual, J)
+        return residual, J
 
     def gaps(self, q: Array) -> Array:
         """(N, loops) how far each loop is open [m]; an angle between the axes of a hinge counts at the size."""
-        residual, points = self.residual(self.tree.poses(q)), 3 * len(self.loops)
-        square = (residual[:, :points].reshape(len(q), 3, len(self.loops)) ** 2).sum(axis=1)
-        square[:, self._hinges] += (residual[:, points:].reshape(len(q), len(self._hinges), 2) ** 2).sum(axis=2)
+        residual, points = self.at(q)[0], 3 * len(self.loops)
+        square = (residual[:, :points].reshape(len(q), len(self.loops), 3) ** 2).sum(axis=2)
+        square[:, self.hinges] += (residual[:, points:].reshape(len(q), len(self.hinges), 2) ** 2).sum(axis=2)
         return self.size * np.sqrt(square)
 
-    def _points(self, poses: Poses) -> tuple[Array, Array]:
-        """The two points (N, 3, loops) of every loop in the world [m]."""
-        ends = ((self._a, self._p_a), (self._b, self._p_b))
-        a, b = (np.swapaxes(poses.p[:, i] + (poses.R[:, i] @ p[..., None])[..., 0], 1, 2) for i, p in ends)
-        return a, b
-
-    def _axes(self, poses: Poses) -> tuple[Array, Array]:
-        """Of every hinge in the world: axis a (N, hinges, 3), and the rows (N, hinges, 3, 3) e, e and b."""
-        R_a, R_b = poses.R[:, self._a[self._hinges]], poses.R[:, self._b[self._hinges]]
-        return (R_a @ self._axes_a[..., None])[..., 0], self._frames_b @ np.swapaxes(R_b, 2, 3)
-
-    @staticmethod
-    def _cosines(axis: Array, frame: Array) -> Array:
-        """(N, hinges, 3) a . e, a . e and a . b."""
-        return (frame @ axis[..., None])[..., 0]
-
-
-def _supports(tree: Tree) -> tuple[Booleans, Array, Booleans]:
-    """How motions move bodies.
-
-    Returns:
-        (bodies, motions) whether the motion turns the body; (bodies, motions, bodies) the lever of its origin, as
-        whole multiples of the bodies' origins; (bodies, motions) whether the motion shifts the origin.
-    """
-    bodies, motions = len(tree.names), len(tree.motions)
-    turning, sliding = np.zeros((bodies, motions), bool), np.zeros((bodies, motions), bool)
-    levers = np.zeros((bodies, motions, bodies))
-    for link in tree.links:
-        B, P = link.body, link.parent
-        turning[B], sliding[B], levers[B] = turning[link.base], sliding[P], levers[P]
-        levers[B, turning[P], B] += 1
-        levers[B, turning[P], P] -= 1
-        for motion in link.motions:
-            (turning if motion.rotates else sliding)[B, motion.row] = True
-    return turning, levers, sliding
-
-
-def _cross(a: Array, b: Array, axis: int = 1) -> Array:
-    """``a x b`` over an axis: quicker than the general one."""
-    (x, y, z), (u, v, w) = (np.moveaxis(c, axis, 0) for c in (a, b))
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=axis)
+    def _table(self) -> Loops:
+        tree, index = self.tree, self.tree.index
+        motions = [motion for link in tree.links for motion in link.motions]
+        last = np.cumsum([len(link.motions) for link in tree.links]).tolist()
+        ends = [(index[loop.body_a], index[loop.body_b]) for loop in self.loops]
+        hinges = [self.loops[i] for i in self.hinges]
+        rows = np.array([motion.row for motion in motions], int)
+        return Loops(
+            link=np.array([
+                (link.body, link.parent, link.base, end - len(link.motions), end)
+                for link, end in zip(tree.links, last, strict=True)
+            ], int).reshape(-1, 5),
+            R0=np.array([link.R0 for link in tree.links]).reshape(-1, 3, 3),
+            p0=np.array([link.p0 for link in tree.links]).reshape(-1, 3),
+            row=rows,
+            turns=np.array([motion.rotates for motion in motions], int),
+            axis=np.array([motion.axis for motion in motions]).reshape(-1, 3),
+            turning=np.ascontiguousarray(np.stack(tree.turning, axis=1)[rows]),
+            C=tree.C,
+            s0=tree.s0,
+            ends=np.array(ends, int).reshape(-1, 2),
+            points=np.array([(loop.p_a, loop.p_b) for loop in self.loops], float).reshape(-1, 2, 3),
+            hinge=self.hinges,
+            along=np.array([_unit(loop.axis_a) for loop in hinges]).reshape(-1, 3),
+            frame=np.array([_frame(loop) for loop in hinges]).reshape(-1, 3, 3),
+            scale=self.scale,
+            size=self.size,
+            independent=np.arange(tree.n),
+            dependent=np.arange(0),
+        )  # fmt: skip
 
 
 def _unit(axis: tuple[float, float, float] | None) -> Array:

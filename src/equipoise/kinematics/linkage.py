@@ -57,6 +57,16 @@ class Linkage(Tree):
         """(N,) the `Status` of each pose."""
         return self.branch.solve(q)[1]
 
+    def close(self, q: Array) -> tuple[Array, Array]:
+        """How many times nearer to a singular pose than usual, 0 where the loops do not close.
+
+        Returns:
+            (N,) to one that no relation between joints leads through, and (N,) to any.
+        """
+        full, branch = self.branch.solve(q)[0], self.branch
+        every = branch.close(full)
+        return (every if branch.within is None else branch.within.close(full[:, branch.kept])), every
+
     def narrow(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """The part of a box of configurations that the loops let it reach."""
         low, high = self.branch.box
@@ -74,5 +84,5 @@ class Linkage(Tree):
         """Analytic body velocities per unit rate of each independent coordinate, at `q` (N, n) with its `poses`."""
         full = poses.q if isinstance(poses, ClosedPoses) else self.branch.solve(q)[0]
         velocities = self.open.velocities(full, poses)
-        rates = self.branch.rates(full, poses)[:, None]
+        rates = self.branch.rates(full)[:, None]
         return Velocities(velocities.w @ rates, velocities.v @ rates, velocities.s @ rates[:, 0])

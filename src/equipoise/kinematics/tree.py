@@ -182,7 +182,7 @@ class Tree:
     def poses(self, q: Array) -> Poses:
         """Body poses at configurations `q` (N, n) [rad or m]."""
         N, s = len(q), self.values(q)
-        constant, cosine, sine = self._turning
+        constant, cosine, sine = self.turning
         turns = constant[:, None] + cosine[:, None] * np.cos(s.T)[..., None, None]
         turns += sine[:, None] * np.sin(s.T)[..., None, None]  # (motions, N, 3, 3)
         R = np.empty((N, len(self.names), 3, 3))
@@ -200,7 +200,7 @@ class Tree:
         return Poses(R, p, s)
 
     @cached_property
-    def _turning(self) -> tuple[Array, Array, Array]:
+    def turning(self) -> tuple[Array, Array, Array]:
         """(motions, 3, 3) each: what is constant, times the cosine and times the sine in each motion's rotation.
 
         The orientation at zero is in the first rotation of a joint.

@@ -37,6 +37,15 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
             f"mobility {mobility.numerical} by the rank of the loop equations, {mobility.gruebler} by counting them: "
             f"{_count(range(mobility.redundant), 'equation')} follow from the others"
         )
+    if (singular := balance.singular) is not None:
+        what = (
+            "relations between its joints lead through"
+            if singular.passed
+            else f"poses {singular.nearer:g} times nearer to one than usual are left out everywhere, "
+            f"{singular.left_out:,} of the random ones"
+        )
+        where = pose(balance.coordinates, singular.configuration)
+        yield Text(f"singular poses lie inside the ranges, one beside {where}: {what}")
     yield verdict(balance)
     if tolerance:
         yield Text(tolerance)

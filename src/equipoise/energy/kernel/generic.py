@@ -6,14 +6,10 @@ never compiled with `parallel`: threads take blocks of poses instead, so there i
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import suppress
-from functools import lru_cache
-from threading import Event
-
 import numpy as np
 
-from . import sines
+from ...model.compiled import Compiled
+from . import sines, trace
 from .trace import ADD, ADDK, FMA, FMAK, FMAM, FMS, FMSK, FNM, INPUT, MUL, MULK, SHARE, SINCOS, SQRT, SUB, Program
 
 LANES = 128  # poses in a block: their registers stay in the second cache, most of them in the first
@@ -27,30 +23,7 @@ def run(program: Program, q: np.ndarray, out: np.ndarray) -> float:
     """
     registers = np.empty((program.registers, LANES), out.dtype)
     p = program
-    arguments = p.code, p.to, p.a, p.b, p.c, p.k, p.m, p.outputs, p.sign, q, registers, out
-    if not _BROKEN.is_set():
-        try:
-            return compiled(keep=True)(*arguments)
-        except Exception:  # what is kept is spoilt, or cannot be kept on a full disk: numba says it in many ways
-            _BROKEN.set()
-            with suppress(Exception):
-                compiled(keep=True)._cache.flush()  # type: ignore[attr-defined]  # so that the next run keeps it again
-    return compiled(keep=False)(*arguments)
-
-
-_BROKEN = Event()  # the directory of what is compiled is of no use to this process
-
-
-@lru_cache
-def compiled(keep: bool) -> Callable[..., float]:
-    """The compiled `interpret`, kept on disk for the next process or not."""
-    from numba import njit
-
-    options = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
-    try:
-        return njit(cache=keep, **options)(interpret)
-    except RuntimeError:  # no directory to keep it in
-        return njit(**options)(interpret)
+    return _compiled(p.code, p.to, p.a, p.b, p.c, p.k, p.m, p.outputs, p.sign, q, registers, out)
 
 
 def interpret(code, to, a, b, c, k, m, outputs, sign, q, registers, out):
@@ -140,3 +113,6 @@ def interpret(code, to, a, b, c, k, m, outputs, sign, q, registers, out):
                 for j in range(width):
                     out[row, start + j] = sign[row] * y[j] + size[j]
     return far
+
+
+_compiled = Compiled(interpret, sines, trace)
