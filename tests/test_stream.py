@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from loop_zoo import four_bar
+from odd_mechanisms import coupled
 from random_mechanisms import random_mechanism
 from robots import robot
 
 from equipoise.energy import Potential
 from equipoise.energy.stream import CHUNK, Statistics, statistics
+from equipoise.energy.tally import draw
+from equipoise.kinematics import Tree, sample
+from equipoise.kinematics.sampling import bounds, inside
 from equipoise.model.errors import InputError, UnsupportedError
+from equipoise.model.mechanism import Mechanism
 
 MECHANISM = random_mechanism(8)
 
@@ -19,8 +24,8 @@ def poses(count: int, seed: int = 1) -> np.ndarray:
     return np.random.default_rng(seed).uniform(-2, 2, (count, len(MECHANISM.coordinates)))
 
 
-def matches(found: Statistics, q: np.ndarray) -> None:
-    state = Potential(MECHANISM).reference(q)
+def matches(found: Statistics, q: np.ndarray, mechanism: Mechanism = MECHANISM) -> None:
+    state = Potential(mechanism).reference(q)
     size = np.abs(state.torque)
     assert found.poses == len(q)
     np.testing.assert_allclose(found.max, size.max(axis=0), rtol=1e-12)
@@ -69,6 +74,40 @@ def test_random_poses_are_those_of_the_seed() -> None:
     other = statistics(ur5, count, seed=4)
     assert (one.rms[1:3] != other.rms[1:3]).all()
     np.testing.assert_allclose(one.rms, other.rms, rtol=0.02, atol=1e-9)
+
+
+def test_random_numbers_are_splitmix64s() -> None:
+    """Against the published recurrence on Python's whole numbers, however the poses are cut into blocks."""
+    seed, n, count, mask = 0x123456789ABCDEF0, 3, 50, 2**64 - 1
+    expected, state = [], seed
+    for _ in range(n * count):
+        state = (state + 0x9E3779B97F4A7C15) & mask
+        z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & mask
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
+        expected.append(((z ^ (z >> 31)) >> 11) / 2**53)
+    lower, width = np.array([0.0, -1.0, 2.0]), np.array([1.0, 2.0, 0.5])
+    q = np.empty((n, count))
+    for first, last in ((0, 20), (20, count)):
+        part = np.empty((n, last - first))
+        draw(np.uint64(seed), first, lower, width, part)
+        q[:, first:last] = part
+    np.testing.assert_array_equal(q.T, lower + width * np.array(expected).reshape(count, n))
+
+
+def test_statistics_do_not_depend_on_the_number_of_threads() -> None:
+    count = 3 * CHUNK + 77
+    one, *others = (statistics(MECHANISM, count, seed=5, threads=threads) for threads in (1, 2, 3))
+    assert one.poses == count
+    assert all(other == one for other in others)
+
+
+def test_random_poses_keep_the_ranges_of_dependent_joints() -> None:
+    arm = coupled(-2.0, 3.0)
+    tree = Tree.of(arm)
+    assert not inside(tree, np.random.default_rng(0).uniform(*bounds(tree), (1000, tree.n))).all()
+    found = statistics(arm, 2000)
+    assert inside(tree, found.worst).all()
+    matches(found, sample(tree, 2000, (0, 0)), arm)
 
 
 def test_poses_that_are_no_numbers_are_left_out() -> None:

@@ -19,13 +19,15 @@ class Compiled:
 
     Args:
         function: which raises nothing by itself.
+        loose: whether sums may be taken in any order, which makes vectors of them.
         modules: beside its own, those of the functions that it calls: what is kept is out of date when one has changed.
     """
 
     broken = Event()  # the directory of what is compiled is of no use to this process
 
-    def __init__(self, function: Callable[..., Any], *modules: ModuleType) -> None:
+    def __init__(self, function: Callable[..., Any], *modules: ModuleType, loose: bool = False) -> None:
         self.function, self.modules = function, modules
+        self.options: dict[str, Any] = OPTIONS | ({"fastmath": {"contract", "reassoc", "nsz"}} if loose else {})
         self.__doc__ = function.__doc__
 
     def __call__(self, *arguments: Any) -> Any:
@@ -43,7 +45,7 @@ class Compiled:
         from numba import njit
 
         try:
-            made: Any = njit(cache=True, **OPTIONS)(self.function)
+            made: Any = njit(cache=True, **self.options)(self.function)
         except RuntimeError:  # no directory to keep it in
             return self._own
         with suppress(AttributeError):  # numba itself looks at the function's own file only
@@ -55,4 +57,4 @@ class Compiled:
     def _own(self) -> Any:
         from numba import njit
 
-        return njit(**OPTIONS)(self.function)
+        return njit(**self.options)(self.function)
