@@ -417,6 +417,12 @@ def test_independent_coordinates_that_do_not_determine_the_others():
         Tree.of(replace(two, independent=names))
 
 
+def test_too_few_independent_coordinates_name_what_stays_free():
+    leg = LOOPED["rod leg"]()
+    with pytest.raises(InputError, match="3 coordinates are independent, found 2: hip, shin; upper z would stay free"):
+        Tree.of(replace(leg, independent=("hip", "shin")))
+
+
 def test_any_coordinate_that_can_may_be_independent():
     by_crank = Tree.of(four_bar())
     assert isinstance(by_crank, Linkage)

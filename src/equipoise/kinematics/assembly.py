@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -151,7 +151,11 @@ def choose(closure: Closure, q: Array, freedom: int) -> Split:
     if given:
         if len(given) != freedom:
             needed = "1 coordinate is" if freedom == 1 else f"{freedom} coordinates are"
-            raise InputError(Fault(("independent",), f"{needed} independent, found {len(given)}: {', '.join(given)}"))
+            found = f"{needed} independent, found {len(given)}: {', '.join(given)}"
+            free = _automatic(closure.tree, J, freedom, {names.index(name) for name in given})
+            missing = [names[j] for j in free if names[j] not in given]
+            more = f"; {', '.join(missing)} would stay free" if len(given) < freedom else ""
+            raise InputError(Fault(("independent",), found + more))
         independent = sorted(names.index(name) for name in given)
         split = _split(independent, n)
         free = _dependent(J[:, split.dependent], STEERS[-1], range(n - len(independent)))
@@ -164,11 +168,12 @@ def choose(closure: Closure, q: Array, freedom: int) -> Split:
     return _split(_automatic(closure.tree, J, freedom), n)
 
 
-def _automatic(tree: Tree, J: Array, freedom: int) -> list[int]:
+def _automatic(tree: Tree, J: Array, freedom: int, given: Container[int] = ()) -> list[int]:
+    """Coordinates that can be independent, those `given` before all others."""
     balls = {
         f"{joint.name}.{letter}" for joint in tree.mechanism.joints if joint.type == "spherical" for letter in "xyz"
     }
-    order = sorted(range(tree.n), key=lambda j: (tree.coordinates[j] not in balls, -j))
+    order = sorted(range(tree.n), key=lambda j: (j in given, tree.coordinates[j] not in balls, -j))
     dependent = []
     for share in STEERS:
         dependent = _dependent(J, share, order)
