@@ -335,7 +335,6 @@ def any_arm(n: int) -> eq.Mechanism:
     return eq.Mechanism("any arm", bodies, joints)
 
 
-@pytest.mark.slow(reason="closes the loops of real joints")
 @pytest.mark.parametrize("n", [2, *(pytest.param(n, marks=pytest.mark.deep) for n in range(3, 8))])
 def test_real_joints_are_proved_on_the_branch_of_the_assembly_pose(n):
     """Its modules fold within the ranges, where another branch begins that does not balance: it is never met."""
