@@ -25,6 +25,7 @@ from .tolerances import SHORTEST
 from .tree import Tree
 
 NEARBY = 0.05  # [rad, or share of the size] from the assembly pose, where relations are looked for
+LEAST_BEND = 1e-3  # so that of two waypoints that serve alike the nearer one is taken
 NOTHING = 1e-12  # a smaller derivative of the loop equations is rounding
 SINGULAR = 1e7  # condition number of the loop equations from which on a pose is singular
 WAYPOINTS = 512  # goals of a round
@@ -33,9 +34,7 @@ MARGIN = 0.25  # of that box, on every side
 ENOUGH = 0.5  # of the goals: no more rounds
 ATTEMPTS = 3  # nearest waypoints that a pose is tried from
 FLOOD = 3  # nearest reached waypoints that a goal is tried from
-COARSE = (
-    0.02  # [rad, or share of the size] shortest step but from the nearest waypoint: it ends far from singular poses
-)
+COARSE = 0.02  # [rad, or share of the size] shortest step between waypoints: they end far from singular poses
 DISTANCES = 4_000_000  # between poses and waypoints, held at a time
 REMEMBERED = 131_072  # poses
 
@@ -204,19 +203,29 @@ class Branch:
         k, size = min(ATTEMPTS, len(q)), max(16, DISTANCES // len(q))
         found = np.zeros((len(u), k), int)
         for i in range(0, len(u), size):
-            apart = self._apart(u[i : i + size], q)
+            apart = self._apart(u[i : i + size], q, self._bend)
             near = np.argpartition(apart, k - 1, axis=1)[:, :k]
             order = np.take_along_axis(apart, near, axis=1).argsort(axis=1)
             found[i : i + size] = np.take_along_axis(near, order, axis=1)
         return found
 
-    def _apart(self, u: Array, q: Array) -> Array:
-        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n), in widths.
+    def _apart(self, u: Array, q: Array, weight: Array | float = 1.0) -> Array:
+        """(N, K) distances of independent coordinates `u` (N, m) from those of poses `q` (K, open.n).
 
-        Of those that matter to the loops: what turns a loop as a whole needs no other start.
+        In widths times `weight` (m,). What turns a loop as a whole has none: it needs no other start.
         """
-        a, b = u[:, self._matters] / self._width, q[:, self.split.independent[self._matters]] / self._width
+        a, b = ((x * (weight / self._width))[:, self._matters] for x in (u, q[:, self.split.independent]))
         return np.sqrt(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T, 0.0))
+
+    @cached_property
+    def _bend(self) -> Array:
+        """(m,) how much the tangents change with each independent coordinate, over the waypoints.
+
+        A rod's spin has nothing: the other joints follow it in proportion, so that one step goes all the way.
+        """
+        low, high = np.quantile(self._waypoints.T, (0.1, 0.9), axis=0)
+        bend = (high - low).max(axis=0, initial=0.0)
+        return np.maximum(bend / max(bend.max(initial=0.0), NOTHING), LEAST_BEND)
 
     @cached_property
     def _ranges(self) -> tuple[Array, Array]:
@@ -225,7 +234,7 @@ class Branch:
 
     @cached_property
     def _width(self) -> Array:
-        lower, upper = (end[self._matters] for end in self._ranges)
+        lower, upper = self._ranges
         return np.where(upper > lower, upper - lower, 1.0)
 
     @cached_property
