@@ -14,7 +14,7 @@ import numpy as np
 
 from ..kinematics.sampling import bounds, inside, slowest
 from ..kinematics.tree import Tree
-from ..model.arrays import Array, Integers
+from ..model.arrays import Array, Booleans, Integers
 
 CLIMB_ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step
@@ -92,13 +92,19 @@ def apart(values: Array, u: Array, count: int) -> Integers:
     A start that only repeats its neighbour finds nothing new. What is not finite is not taken.
     """
     chosen: list[int] = []
+    columns = np.ascontiguousarray(u.T)
+    finite = np.where(np.isfinite(values), values, -np.inf)
+
+    def near(i: int, radius: float) -> Booleans:
+        return np.abs(columns - columns[:, i : i + 1]).max(axis=0, initial=0) < radius
+
     for radius in (0.2, 0.1, 1e-9):
-        open_to = np.where(np.isfinite(values), values, -np.inf)
+        free = finite.copy()
         for i in chosen:
-            open_to[np.abs(u - u[i]).max(axis=1, initial=0) < radius] = -np.inf
-        while len(chosen) < count and np.isfinite(open_to.max(initial=-np.inf)):
-            chosen.append(int(open_to.argmax()))
-            open_to[np.abs(u - u[chosen[-1]]).max(axis=1, initial=0) < radius] = -np.inf
+            free[near(i, radius)] = -np.inf
+        while len(chosen) < count and np.isfinite(free.max(initial=-np.inf)):
+            chosen.append(int(free.argmax()))
+            free[near(chosen[-1], radius)] = -np.inf
     return np.array(chosen, int)
 
 
@@ -120,7 +126,8 @@ def climb(tree: Tree, values: Callable[[Array], Array], q: Array, seed: int = 0)
     width = np.where(upper > lower, upper - lower, 1.0)
 
     def reachable(x: Array) -> Array:
-        return np.where(inside(tree, x)[:, None], values(x), -np.inf)
+        found = values(x)
+        return np.where(inside(tree, x)[:, None] & np.isfinite(found), found, -np.inf)
 
     if tree.n <= CORNERED:
         corners = np.array(list(product(*zip(lower, upper, strict=True))))
