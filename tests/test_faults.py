@@ -111,7 +111,12 @@ def test_a_place_that_is_no_folder(name, tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_command_that_is_told_to_stop(number, tmp_path):
     searching = [sys.executable, "-m", "equipoise", "layouts", "6", "-o", "OUT"]
-    child = subprocess.Popen(searching, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def heard() -> None:  # what a shell starts in the background ignores SIGINT
+        signal.signal(number, signal.SIG_DFL)
+
+    pipe = subprocess.PIPE
+    child = subprocess.Popen(searching, cwd=tmp_path, stderr=pipe, stdout=pipe, text=True, preexec_fn=heard)
     assert child.stderr is not None
     assert child.stderr.readline().startswith("note: ")  # it is at work
     child.send_signal(number)
