@@ -55,7 +55,7 @@ format: $(STAMP) ## put the sources into the format that lint asks for
 	$(BIN)/ruff format
 
 docs: $(STAMP) ## the documentation, into docs/_build/html
-	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+	$(BIN)/sphinx-build -q -W --keep-going -j auto -b html docs docs/_build/html
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Open docs/_build/html/index.html"
 
