@@ -143,18 +143,7 @@ class Balance(Shown):
                 "bound": [None] * len(coordinates) if self.bound is None else self.bound.tolist(),
             },
             "worst": {"configuration": self.worst_configuration.tolist(), "torque": self.worst_torque.tolist()},
-            "springs": [
-                {
-                    **spring.to_dict(use.path, use.force),
-                    **(
-                        {"states": [one.to_dict() for one in use.reached]}
-                        if spring.law.states or not spring.compiled
-                        else {}
-                    ),
-                    **({"friction": list(use.margin)} if use.margin else {}),
-                }
-                for spring, use in zip(self.mechanism.springs, self.use, strict=True)
-            ],
+            "springs": [use.to_dict(spring) for spring, use in zip(self.mechanism.springs, self.use, strict=True)],
         }
 
 

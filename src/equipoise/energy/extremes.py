@@ -18,7 +18,7 @@ from ..model.arrays import Array, Booleans, Integers
 
 CLIMB_ROUNDS = 24
 SHRINK = 0.6  # of the step per round: 24 rounds end at 5e-6 of the first step
-BUDGET = 48_000  # poses that either kind of climb may evaluate in all
+BUDGET = 48_000  # poses that each stage of the climb may evaluate, and the random search at its end
 LOOPED = 12_000  # the same where every pose has loops to close
 STAGES = ((64, 4), (10, 8), (3, 12))  # climbers of each quantity, at most, and rounds of quasi-Newton steps
 CORNERED = 8  # coordinates, at most, whose box has all its corners tried

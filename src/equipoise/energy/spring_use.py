@@ -68,6 +68,15 @@ class SpringUse:
         """The largest force magnitude [N]."""
         return max(map(abs, self.force))
 
+    def to_dict(self, spring: Element) -> dict[str, Any]:
+        """The spring's entry in ``check --json``; `states` where it can be in any, `friction` where it has some."""
+        entry = spring.to_dict(self.path, self.force)
+        if spring.law.states or spring.wheels:
+            entry["states"] = [one.to_dict() for one in self.reached]
+        if self.margin:
+            entry["friction"] = list(self.margin)
+        return entry
+
 
 def uses(mechanism: Mechanism, q: Array, path: Array, most: Array, at: Array) -> tuple[SpringUse, ...]:
     """Of each spring.
@@ -100,8 +109,7 @@ def _judged(mechanism: Mechanism, q: Array) -> list[tuple[Array, list[Reached]]]
     """For each spring the largest torque of its friction over the poses, (n,) [N m or N], (0,) where it has none; and
     what is to be said of its pulleys."""
     tree, q = Tree.of(mechanism), q[:MARGINS]
-    alike = [not spring.law.margin and spring.compiled for spring in mechanism.springs]
-    poses = None if all(alike) else tree.poses(q)
+    poses = tree.poses(q) if any(spring.law.margin or spring.wheels for spring in mechanism.springs) else None
     found = []
     for spring in mechanism.springs:
         margin, routed = np.zeros(0), list[Reached]()

@@ -221,10 +221,9 @@ class Between:
         if kind == int(wrap.mjWRAP_SITE):
             return Guide(*self._point(number))
         if kind != int(wrap.mjWRAP_CYLINDER) or side < 0:
-            what = "a sphere or a pulley block" if side >= 0 or kind != int(wrap.mjWRAP_CYLINDER) else "no side site"
-            self.source.refuse(
-                "tendon", t, f"is a spring with {what}: it runs through sites and on cylinders with a side"
-            )
+            what = "no side site" if kind == int(wrap.mjWRAP_CYLINDER) else "a sphere or a pulley block"
+            problem = f"is a spring with {what}: it runs through sites and on cylinders with a side"
+            self.source.refuse("tendon", t, problem)
             return None
         body, origin = self.place[int(model.geom_bodyid[number])]
         beside, p = self._point(side)

@@ -45,6 +45,15 @@ def about(axis: ArrayLike, angle: ArrayLike) -> Array:
     return A0 + 2 * (np.cos(angle) * A1.real - np.sin(angle) * A1.imag)
 
 
+def frame_of(axis: ArrayLike) -> Array:
+    """(3, 3) rows: two unit vectors that make a right-handed frame with the unit vector `axis`, and that one last."""
+    z = np.asarray(axis, float)
+    x: Array = np.eye(3)[int(np.argmin(np.abs(z)))]
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z])
+
+
 def harmonics(axis: ArrayLike) -> tuple[Array, Complexes]:
     """(A0, A1) with ``R(q) = A0 + A1 exp(iq) + conj(A1) exp(-iq)`` for the rotation about a unit `axis` (3,).
 

@@ -16,7 +16,7 @@ import numpy as np
 from ...kinematics.tree import Link, Motion, Tree
 from ...model.arrays import Array, frozen
 from ...model.masses import lumped_masses
-from ...model.rotation import skew
+from ...model.rotation import frame_of
 
 SNAP = 1e-15  # entries of rotations closer than this to 0 or +-1 are that
 
@@ -202,8 +202,4 @@ def _about_z(turn: Turn) -> Array:
 
 def _onto(motion: Motion) -> Array:
     """A rotation that takes z onto the motion's axis, a permutation where it can be."""
-    z = motion.axis
-    x = np.eye(3)[int(np.argmin(np.abs(z)))]
-    x = x - (x @ z) * z
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, skew(z) @ x, z])
+    return frame_of(motion.axis).T

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array, frozen
+from ..arrays import Array, frozen, vec3
 from ..errors import Fault, finite, known, positive
+from ..rotation import frame_of
 from .element import Vec3
 
 if TYPE_CHECKING:
@@ -60,11 +61,7 @@ class Pulley(Guide):
     @property
     def frame(self) -> Array:
         """(3, 3) its axes as rows in the body's frame, its own axis last."""
-        z = np.array(self.axis) / np.linalg.norm(self.axis)
-        x: Array = np.eye(3)[int(np.argmin(np.abs(z)))]
-        x = x - (x @ z) * z
-        x = x / float(np.linalg.norm(x))
-        return np.stack([x, np.cross(z, x), z])
+        return frame_of(np.array(self.axis) / np.linalg.norm(self.axis))
 
     @property
     def towards(self) -> Array:
@@ -89,7 +86,7 @@ class Pulley(Guide):
         start = np.arctan2(*self.towards[::-1])
         turn = start + np.linspace(0, 2 * np.pi, count + 1)
         rim = self.radius * np.stack([np.cos(turn), np.sin(turn), np.zeros(count + 1)], axis=1)
-        return [(float(x), float(y), float(z)) for x, y, z in rim @ self.frame + np.array(self.point)]
+        return [vec3(p) for p in rim @ self.frame + np.array(self.point)]
 
     def wrap(self, tree: Tree, poses: Poses, x_a: Array, x_b: Array) -> Wrap:
         """How a cable between two points of the world (N, 3) [m] lies on it."""

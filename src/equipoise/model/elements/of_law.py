@@ -11,6 +11,7 @@ from .along_line import AlongLine
 from .element import Vec3
 from .guides import Guide, Pulley
 from .laws import Law
+from .laws.law import plain
 from .on_joints import OnJoints
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ class LineElement(AlongLine):
 
     @property
     def keys(self) -> dict[str, Any]:
-        via = [{f.name: _plain(getattr(guide, f.name)) for f in fields(guide)} for guide in self.via]
+        via = [{f.name: plain(getattr(guide, f.name)) for f in fields(guide)} for guide in self.via]
         return {**super().keys, **({"via": via} if via else {}), **self.law.values()}
 
     def scaled(self, factor: float) -> LineElement:
@@ -82,7 +83,3 @@ class JointElement(OnJoints):
 
     def scaled(self, factor: float) -> JointElement:
         return replace(self, law=self.law.scaled(factor))
-
-
-def _plain(value: Any) -> Any:
-    return list(value) if isinstance(value, tuple) else value

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, vec3
 from ..errors import Fault, NoFourierForm, known
+from ..rotation import frame_of
 from .element import Element, End, Pens, Range, Tendon
 from .laws.law import Terms
 
@@ -102,17 +103,14 @@ class OnJoints(Element):
         ahead = [np.linalg.norm(other.p0) for other in tree.links if other.parent == link.body]
         com = np.linalg.norm(tree.mechanism.bodies[link.body - 1].com)
         radius = SPIRAL * float(max([*ahead, com], default=0.0) or np.linalg.norm(link.p0) or 1.0)
-        x = np.eye(3)[int(np.argmin(np.abs(axis)))]
-        x = x - (x @ axis) * axis
-        x /= np.linalg.norm(x)
-        y = np.cross(axis, x)
+        x, y, _ = frame_of(axis)
         turn = 2 * pi * TURNS * np.linspace(0, 1, POINTS)
         spiral = (
             radius * np.linspace(0.15, 1, POINTS)[:, None] * (np.cos(turn)[:, None] * x + np.sin(turn)[:, None] * y)
         )
         places = link.p0 + spiral @ link.R0.T
         parent = tree.names[link.parent]
-        return tuple((parent, (float(a), float(b), float(c))) for a, b, c in places)
+        return tuple((parent, vec3(p)) for p in places)
 
     @property
     def where(self) -> str:

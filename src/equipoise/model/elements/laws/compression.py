@@ -66,10 +66,6 @@ class Compression(Law):
         return (loose, solid) if self.solid_length else (loose,)
 
     @property
-    def strength(self) -> tuple[float, str]:
-        return self.stiffness, "N/m"
-
-    @property
     def free(self) -> float:
         return self.free_length
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import Fault
-from ...units import SI_UNITS
 from .law import Knob, Law, Look, amount
 
 if TYPE_CHECKING:
@@ -48,10 +47,6 @@ class _Constant(Law):
 
     def mjcf_bias(self) -> tuple[float, float]:
         return self.amount, 0.0
-
-    @property
-    def strength(self) -> tuple[float, str]:
-        return self.amount, SI_UNITS[fields(self)[0].metadata["dimension"]]
 
     def scaled(self, factor: float) -> Self:
         return self._times(factor, fields(self)[0].name)

@@ -74,10 +74,6 @@ class Extension(Law):
         return (slack,) if self.longest == inf else (slack, State("over-stretched", self.longest, True, True))
 
     @property
-    def strength(self) -> tuple[float, str]:
-        return self.stiffness, "N/m"
-
-    @property
     def free(self) -> float:
         return self.body_length
 

@@ -150,7 +150,7 @@ class Law(ABC):
 
     def values(self) -> dict[str, Any]:
         """The file's keys and their values; None where there is no limit."""
-        return {f.name: _plain(getattr(self, f.name)) for f in fields(self)}
+        return {f.name: plain(getattr(self, f.name)) for f in fields(self)}
 
     def mjcf(self) -> Mapping[str, tuple[float, ...]] | None:
         """As numbers of a tendon of MJCF, or None where it has none such."""
@@ -173,9 +173,10 @@ class Law(ABC):
         return 0.0
 
     @property
-    @abstractmethod
     def strength(self) -> tuple[float, str]:
-        """The number that says how strong it is, and its unit."""
+        """The number that says how strong it is, and its unit: its first one."""
+        first = fields(self)[0]
+        return float(getattr(self, first.name)), SI_UNITS[first.metadata["dimension"]]
 
     @property
     def free(self) -> float | None:
@@ -197,9 +198,10 @@ class Law(ABC):
         return replace(self, **{name: factor * value for name, value in given.items() if value is not None})
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """A value of a file as JSON has it: lists for tuples, None for no limit."""
     if isinstance(value, tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     return None if value == inf else value
 
 

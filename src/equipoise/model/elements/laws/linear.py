@@ -78,10 +78,6 @@ class Linear(Law):
         return -self.stiffness * self.free_length, self.stiffness
 
     @property
-    def strength(self) -> tuple[float, str]:
-        return self.stiffness, "N/m"
-
-    @property
     def free(self) -> float:
         return self.free_length
 
