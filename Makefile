@@ -27,7 +27,7 @@ $(STAMP): pyproject.toml constraints.txt
 	echo "Setting up .venv with $$("$$found" --version) and the pinned dependencies: a minute or two"; \
 	"$$found" -m venv .venv
 	@$(BIN)/python $(PIP) install -c constraints.txt pip hatchling editables
-	@$(BIN)/python $(PIP) install -c constraints.txt --no-build-isolation -e '.[cad,report,sim,study,view]' --group dev
+	@$(BIN)/python $(PIP) install -c constraints.txt --no-build-isolation -e '.[cad,proof,report,room,sim,study,view]' --group dev
 	@touch $@
 
 demo: $(STAMP) ## the main job on a real robot, start to finish
@@ -73,7 +73,7 @@ bare: $(STAMP) ## install the wheel without extras into a throw-away environment
 	venv/bin/equipoise --help
 
 constraints: $(STAMP) ## compile constraints.txt anew from pyproject.toml (add UPGRADE=1 for the newest versions)
-	@$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"]["dev"], sep="\n")' | \
+	@$(BIN)/python -c 'import tomllib; print(*sum(tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"].values(), []), sep="\n")' | \
 	CUSTOM_COMPILE_COMMAND='make constraints' $(BIN)/pip-compile --quiet $(if $(UPGRADE),--upgrade) \
 		--all-extras --allow-unsafe --strip-extras --no-annotate \
 		--no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
