@@ -61,6 +61,8 @@ def test_exit_code_one_when_a_spring_cannot_be_made(run, arm) -> None:
     code, out, _ = run("hardware", arm, *ROOM, "--realise", "direct")
     assert code == 1
     assert "INCOMPLETE" in out
+    assert "cannot be made: the attachments come as near as" in out
+    assert "What would help" in out
     code, out, _ = run("hardware", arm, "--outer", "5mm", "--length", "0.2", "--most", "1", "--json")
     assert code == 1
     assert json.loads(out)["residual"].keys() == {"design", "design_share"}
@@ -190,3 +192,15 @@ def test_dxf_without_ezdxf_says_what_to_install(run, arm, tmp_path, monkeypatch)
     code, _, err = run("hardware", arm, *ROOM, "--sheet", tmp_path / "springs.dxf")
     assert code == 2
     assert "pip install 'equipoise[cad]'" in err
+
+
+def test_what_would_help_does_help(arm) -> None:
+    mechanism = eq.load(arm)
+    hard = Options(envelope=Envelope(0.006, 1.2), most=1)
+    item = bill(eq.check(mechanism, samples=200), hard).items[0]
+    assert not item.chosen
+    assert "stress" in item.hopeless
+    wider = next(text for text in item.remedies if "--outer" in text)
+    outer = float(wider.split("outer diameter of ")[1].split(" mm")[0]) / 1000
+    helped = bill(eq.check(mechanism, samples=200), Options(envelope=Envelope(outer + 1e-4, 1.2), most=1))
+    assert helped.items[0].chosen

@@ -143,7 +143,7 @@ def test_correction_is_between_the_other_ones_in_use() -> None:
 
 @given(st.floats(50, 900), st.floats(0, 1))
 def test_goodman(top: float, share: float) -> None:
-    limits, s = Limits(), golden()
+    limits, s = Limits(cycles=1e6), golden()
     force = s.force_at(top * MPA) / s.correction  # corrected stress is `top`
     margin = s.fatigue_margin(share * force, force, limits)
     # on the line itself the margin is one
@@ -156,10 +156,20 @@ def test_goodman(top: float, share: float) -> None:
 
 
 def test_goodman_passes_through_zimmerlis_point() -> None:
-    limits, s = Limits(), golden()
+    limits, s = Limits(cycles=1e7), golden()
     low, high = (limits.mean - limits.amplitude, limits.mean + limits.amplitude)
     least, most = (s.force_at(x) / s.correction for x in (low, high))
     assert s.fatigue_margin(least, most, limits) == pytest.approx(1, rel=1e-12)
+
+
+def test_fewer_cycles_are_a_straight_line_in_both_logarithms() -> None:
+    ultimate = 1000e6
+    few, between, many = (Limits(cycles=cycles).endured(ultimate) for cycles in (1e3, 10**4.5, 1e6))
+    assert few == pytest.approx(900e6)
+    assert many == pytest.approx(241e6 / (1 - 0.379))
+    assert between == pytest.approx((few * many) ** 0.5)
+    assert Limits(cycles=10).endured(ultimate) == few
+    assert Limits(cycles=1e9).endured(ultimate) == many
 
 
 def test_every_limit_has_a_source_and_can_be_replaced() -> None:

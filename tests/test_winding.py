@@ -32,7 +32,9 @@ def test_lightest_is_that_of_a_plain_loop(rate: float, least: float, most: float
             hook = LOOP * (D - d)
             hook = max(hook, (math.pi * d**3 * stress / 8 / D / rate - (n + 1) * d) / 2)
             s = ExtensionSpring(DH[0], d, D, n, stress, hook)
-            if n < 3 or s.static_margin(most, limits) < 1 or s.hook_margin(most, limits) < 1:
+            if n < 3 or min(s.static_margin(most, limits), s.hook_margin(most, limits)) < limits.safety:
+                continue
+            if s.fatigue_margin(least, most, limits) < limits.fatigue:
                 continue
             if s.length(most) > 0.8:
                 continue
@@ -58,7 +60,7 @@ def test_a_feasible_spring_does_what_is_asked(rate: float, stroke: float, share:
         assert found.reason == ""
         assert s.outer <= room.outer * (1 + 1e-9)
         assert limits.index[0] <= s.index * (1 + 1e-9)
-        assert s.static_margin(need.most, limits) >= 1 - 1e-9
+        assert s.static_margin(need.most, limits) >= limits.safety - 1e-9
         assert min(DH[0].preferred, key=lambda d: abs(d - s.d)) == s.d
         if isinstance(s, ExtensionSpring):
             assert s.initial_tension <= need.least * (1 + 1e-9)  # open at every force
@@ -68,7 +70,14 @@ def test_a_feasible_spring_does_what_is_asked(rate: float, stroke: float, share:
 
 def test_heavier_demands_cost_mass() -> None:
     need, masses = Need(1000, 20, 200), []
-    for limits in (Limits(), Limits(fatigue=1.0), Limits(fatigue=1.0, safety=2.0), Limits(fatigue=1.5, safety=2.5)):
+    bare = Limits(safety=1.0, fatigue=0.0)
+    for limits in (
+        bare,
+        Limits(),
+        Limits(cycles=1e7),
+        Limits(fatigue=1.0, safety=2.0),
+        Limits(fatigue=1.5, safety=2.5),
+    ):
         found = extension(need, DH, limits)
         assert found.feasible
         masses.append(found.mass)

@@ -12,6 +12,7 @@ from ..model.errors import Fault, InputError
 from ..model.units import quantity, share
 from . import terminal
 from .app import File, Json, app
+from .margins import Cycles, Fatigue, Safety
 
 if TYPE_CHECKING:
     from ..hardware import Options
@@ -31,8 +32,9 @@ def hardware(
     length: Annotated[str | None, typer.Option(help="largest length of a spring in use")] = None,
     pulley: Annotated[str, typer.Option(help="radius of the pulleys")] = "10mm",
     most: Annotated[int, typer.Option(min=1, help="at most this many springs side by side")] = 8,
-    fatigue: Annotated[float, typer.Option(min=0, help="Goodman margin asked for; 0: none")] = 0.0,
-    safety: Annotated[float, typer.Option(min=0.01, help="static margin asked for")] = 1.0,
+    fatigue: Fatigue = 1.0,
+    safety: Safety = 1.2,
+    cycles: Cycles = 1e5,
     limit: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="another permissible stress; --json lists them")
     ] = None,
@@ -51,7 +53,7 @@ def hardware(
     from ..report.drawing import check_sheet, save_drawing
 
     options = _options(wire, strength, outer, length, pulley, most, limit or [], friction or [])
-    options = replace(options, limits=replace(options.limits, fatigue=fatigue, safety=safety))
+    options = replace(options, limits=replace(options.limits, fatigue=fatigue, safety=safety, cycles=cycles))
     mechanism = terminal.load(file)
     if output:
         if output.suffix.lower() != ".csv":

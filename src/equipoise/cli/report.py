@@ -11,12 +11,15 @@ import typer
 from ..model.errors import Fault, InputError, nearest
 from . import terminal
 from .app import File, Json, app
+from .margins import Cycles, Fatigue, Safety
 
 NONE = "none"
+MARGINS = ("safety", "fatigue", "cycles")
 
 
 @app.command()
 def report(
+    context: typer.Context,
     file: File,
     output: Annotated[Path, typer.Option("-o", "--output", help=".html or .pdf", show_default=False)],
     with_: Annotated[
@@ -27,6 +30,9 @@ def report(
     radius: Annotated[
         str | None, typer.Option(help="of uniform spheres for bodies without an inertia, to simulate them")
     ] = None,
+    safety: Safety = 1.2,
+    fatigue: Fatigue = 1.0,
+    cycles: Cycles = 1e5,
     json: Json = False,
 ) -> None:
     """One self-contained file: verdict, pictures, springs, torques, certificate, simulation, hardware, tolerance.
@@ -38,6 +44,7 @@ def report(
     Example: [bold]equipoise report balanced.yaml -o balanced.pdf --with hardware[/bold]
     """
     from ..balance import check
+    from ..hardware import Limits
     from ..report.page.make import EXTRAS, check_report, make, save_report
     from . import options
 
@@ -50,13 +57,16 @@ def report(
     mechanism = terminal.load(file)
     typed = ["equipoise", "report", file.name, "-o", output.name]  # what gives the same again
     typed += [] if extras == list(EXTRAS) else ["--with", ",".join(extras) or NONE]
-    for option, value in (("--samples", samples), ("--seed", seed or None), ("--radius", radius)):
+    asked = Limits(safety=safety, fatigue=fatigue, cycles=cycles)
+    margins = [(f"--{name}", f"{getattr(asked, name):g}") for name in MARGINS if terminal.typed(context, name)]
+    for option, value in (("--samples", samples), ("--seed", seed or None), ("--radius", radius), *margins):
         typed += [] if value is None else [option, str(value)]
     with terminal.progress_bar("judging") as progress:
         progress("judging the balance", 0.0)
         balance = check(mechanism, samples=samples, seed=seed)
         found = make(
-            balance, extras=extras, seed=seed, radius=size, file=file, command=shlex.join(typed), progress=progress
+            balance, extras=extras, seed=seed, radius=size, limits=asked, file=file, command=shlex.join(typed),
+            progress=progress,
         )  # fmt: skip
         save_report(found, output)
     if json:

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..balance import Balance
-from ..hardware.realise.bill import Bill, BillItem, way_dict
+from ..hardware.realise.bill import Bill, way_dict
 from ..hardware.realise.realisations import FRICTION
 from ..hardware.sizing.extension import ExtensionSpring
 from ..hardware.sizing.wire import MM
@@ -86,6 +86,7 @@ def _built(bill: Bill) -> Iterator[Text]:
     if bill.left is None:
         missing = ", ".join(item.spring.name for item in bill.items if not item.chosen)
         yield Text(f"INCOMPLETE: no way to make {missing} within the given limits", style="bold yellow")
+        yield from (Text(f"  {text}", style="yellow") for text in bill.warnings)
         return
     yield Text(f"springs: {1000 * bill.mass:.4g} g in all")
     parts = []
@@ -97,18 +98,7 @@ def _built(bill: Bill) -> Iterator[Text]:
     shares = ", ".join(f"{kind} {_percent(share)}" for kind, share in bill.options.friction.items())
     assumed = "assumed, not measured" if dict(bill.options.friction) == FRICTION else "as given"
     yield Text(f"  friction, share of each spring's force, {assumed}: {shares}")
-    weak = [item.spring.name for item in bill.items if _weak(bill, item)]
-    if weak:
-        yield Text(
-            f"  will break in the end if it works over its whole range (fatigue margin under 1): {', '.join(weak)}; "
-            "--fatigue 1 asks for springs that endure",
-            style="yellow",
-        )
-
-
-def _weak(bill: Bill, item: BillItem) -> bool:
-    way = item.chosen
-    return way is not None and way_dict(item, way, bill.options.limits)["fatigue_margin"] < 1
+    yield from (Text(f"  warning: {text}", style="yellow") for text in bill.warnings)
 
 
 def bill_csv(bill: Bill) -> str:

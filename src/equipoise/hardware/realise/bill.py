@@ -24,21 +24,32 @@ from ..sizing.limits import SOURCES, Limits
 from ..sizing.winding import NO_TENSION
 from .installed import InstalledTorque, installed_torque
 from .realisations import KINDS, Options, Realisation, rank, realisations
+from .remedies import remedies
 from .stretch import Straight
 
 
 @dataclass(frozen=True)
 class BillItem:
-    """A spring of the design and the ways to make it, the best first."""
+    """A spring of the design and the ways to make it, the best first.
+
+    Attributes:
+        remedies: where it cannot be made, what alone would make it possible.
+    """
 
     spring: Spring
     use: SpringUse
     ways: tuple[Realisation, ...]
+    remedies: tuple[str, ...] = ()
 
     @property
     def chosen(self) -> Realisation | None:
         """The best that works."""
         return self.ways[0] if self.ways[0].works else None
+
+    @property
+    def hopeless(self) -> str:
+        """Why it cannot be made, and what would help."""
+        return f"cannot be made: {self.ways[0].reason}. What would help: {'; or '.join(self.remedies)}"
 
     def forces(self, way: Realisation) -> tuple[float, float]:
         """Least and largest force of each of the springs side by side, made in this way [N]."""
@@ -72,6 +83,20 @@ class Bill:
         return all(item.chosen for item in self.items)
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What whoever builds it has to know: springs that cannot be made, and those that will break."""
+        found = [f"{item.spring.name} {item.hopeless}" for item in self.items if not item.chosen]
+        limits = self.options.limits
+        margins = {i.spring.name: way_dict(i, i.chosen, limits)["fatigue_margin"] for i in self.items if i.chosen}
+        weak = [f"{name} ({margin:.2f})" for name, margin in margins.items() if margin < 1]
+        if weak:
+            found.append(
+                f"will break before {limits.cycles:g} cycles over its whole range (fatigue margin under 1): "
+                f"{', '.join(weak)}; --fatigue 1 asks for springs that endure"
+            )
+        return tuple(found)
+
+    @property
     def mass(self) -> float:
         """[kg] of all springs that can be made."""
         return sum(item.chosen.winding.mass for item in self.items if item.chosen)
@@ -83,6 +108,7 @@ class Bill:
             "complete": self.complete,
             "mass": self.mass,
             "springs": [_item(item, self.options.limits) for item in self.items],
+            "warnings": list(self.warnings),
             "residual": {"design": self.balance.residual.max.tolist(), "design_share": self.balance.relative}
             | (_left(self.left) if self.left else {}),
             "limits": {
@@ -117,7 +143,8 @@ def bill(
         ways = sorted(realisations(balance, i, options), key=rank)
         if kind is not None:
             ways.sort(key=lambda way: way.kind != kind)
-        items.append(BillItem(spring, use, tuple(ways)))
+        helped = () if ways[0].works else remedies(balance, i, options, kind)
+        items.append(BillItem(spring, use, tuple(ways), helped))
     chosen = [item.chosen for item in items]
     made = [way for way in chosen if way is not None]
     if len(made) < len(chosen):
@@ -144,6 +171,7 @@ def _item(item: BillItem, limits: Limits) -> dict[str, Any]:
         "max_length": item.use.max_length,
         "max_force": item.use.max_force,
         "chosen": item.chosen.kind if item.chosen else None,
+        "remedies": list(item.remedies),
         "realisations": [way_dict(item, way, limits) for way in item.ways],
     }
 

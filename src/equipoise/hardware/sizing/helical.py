@@ -84,13 +84,13 @@ class Helical:
         return self.d / (2 * pi * self.n * self.D**2) * np.sqrt(self.wire.shear_modulus / (2 * self.wire.density))
 
     def fatigue_margin(self, least: Quantity, most: Quantity, limits: Limits) -> Quantity:
-        """Goodman margin of a force that changes between two values [N]: 1 endures, less breaks in the end.
+        """Goodman margin of a force that changes between two values [N]: 1 lasts for the limits' cycles, less breaks.
 
         The line runs from the endured amplitude at no mean stress to the ultimate shear strength.
         """
         top, bottom = self.corrected(most), self.corrected(least)
         ultimate = limits.shear_strength * self.strength
-        endured = limits.amplitude / (1 - limits.mean / ultimate)
+        endured = limits.endured(ultimate)
         with np.errstate(divide="ignore"):
             return 1 / ((top - bottom) / 2 / endured + (top + bottom) / 2 / ultimate)
 

@@ -11,6 +11,8 @@ import numpy as np
 from ...model.errors import Fault, InputError, nearest
 from .wire import Quantity
 
+LOW, FOR_EVER = 1e3, 1e6  # cycles between which the strength falls
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -23,6 +25,8 @@ class Limits:
         hook_bending, hook_torsion: stresses in the loop of an extension spring, share of Rm.
         shear_strength: ultimate strength in torsion, share of Rm, where Goodman's line ends.
         amplitude, mean: [Pa] a pair that unpeened springs endure for ever, where Goodman's line begins.
+        low_cycle: alternating strength at 10^3 cycles, share of the ultimate strength in torsion.
+        cycles: that a spring must live through, from its least to its largest force and back.
         initial, initial_slope: greatest initial stress of an extension spring, (initial - initial_slope w) Rm.
         index: least and greatest spring index w = D/d.
         coils_extension, coils_compression: least number of active coils.
@@ -40,6 +44,8 @@ class Limits:
     shear_strength: float = 0.67
     amplitude: float = 241e6
     mean: float = 379e6
+    low_cycle: float = 0.9
+    cycles: float = 1e5
     initial: float = 0.135
     initial_slope: float = 0.00625
     index: tuple[float, float] = (4.0, 20.0)
@@ -47,8 +53,8 @@ class Limits:
     coils_compression: float = 2.0
     free_length: float = 0.630
     slenderness: float = 20.0
-    safety: float = 1.0
-    fatigue: float = 0.0
+    safety: float = 1.2
+    fatigue: float = 1.0
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -57,6 +63,15 @@ class Limits:
             for one in value if isinstance(value, tuple) else (value,):
                 if not least <= one < float("inf"):
                     raise InputError(Fault(("limits", field.name), f"must be more than 0 and finite, found {one:g}"))
+
+    def endured(self, ultimate: Quantity) -> Quantity:
+        """Stress amplitude [Pa] about no mean that is endured for `cycles`, at an ultimate strength in torsion [Pa].
+
+        From 10^6 on that of springs that last for ever; down to 10^3 straight in both logarithms.
+        """
+        for_ever = self.amplitude / (1 - self.mean / ultimate)
+        share = np.clip(np.log10(FOR_EVER / self.cycles) / np.log10(FOR_EVER / LOW), 0.0, 1.0)
+        return for_ever * (self.low_cycle * ultimate / for_ever) ** share
 
     @staticmethod
     def changed(values: Mapping[str, str]) -> Limits:
@@ -94,6 +109,8 @@ SOURCES = {
     "shear_strength": "Shigley's Mechanical Engineering Design, eq. 10-30: Ssu = 0.67 Sut",
     "amplitude": "Zimmerli's data, unpeened, in Shigley's Mechanical Engineering Design, eq. 10-28",
     "mean": "Zimmerli's data, unpeened, in Shigley's Mechanical Engineering Design, eq. 10-28",
+    "low_cycle": "Norton, Machine Design, 12.4: 0.9 of the ultimate strength in torsion at 10^3 cycles",
+    "cycles": "the user's choice",
     "initial": "EN 13906-2:2013, 10.4: the higher of its two guide lines; its lower one is 0.075 - 0.00375 w",
     "initial_slope": "as initial",
     "index": "EN 13906-1 and -2, table 1",

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...balance import Balance
 from ...energy.exactness import EXACT
-from ...hardware import Bill
+from ...hardware import Bill, Limits, Options
 from ...hardware.realise.bill import bill, way_dict
 from ...hardware.sizing.wire import MM
 from ...model.arrays import Array
@@ -25,7 +25,7 @@ from ...robust import Scatter, Tolerance, tolerance
 from ...simulate import Release, release
 from ...simulate.release import SOFT
 from ..style import number
-from .content import Block, Cell, Number, Paragraph, Section, Table
+from .content import Block, Cell, Items, Number, Paragraph, Section, Table
 
 EXTRAS = ("simulation", "hardware", "tolerance")
 SECONDS, POSES = 5.0, 5  # of the simulation: short, `equipoise simulate` runs longer
@@ -43,7 +43,9 @@ class Run:
     tolerance: Tolerance | str | None = None
 
 
-def run(balance: Balance, extras: tuple[str, ...], seed: int, radius: Amount | None, report: Progress) -> Run:
+def run(
+    balance: Balance, extras: tuple[str, ...], seed: int, radius: Amount | None, limits: Limits, report: Progress
+) -> Run:
     """Run what is asked for; what a mechanism does not allow is no error."""
     m = balance.mechanism
 
@@ -61,7 +63,9 @@ def run(balance: Balance, extras: tuple[str, ...], seed: int, radius: Amount | N
         "simulating",
         lambda: release(m, seconds=SECONDS, poses=POSES, seed=seed, radius=radius, progress=report),
     )
-    made = attempt("hardware", "choosing springs to wind", lambda: bill(balance, progress=report))
+    made = attempt(
+        "hardware", "choosing springs to wind", lambda: bill(balance, Options(limits=limits), progress=report)
+    )
     # lengths of loops cannot scatter on their own: they would not close
     scatter = Scatter(length=0.0) if m.loops else Scatter()
     scattered = attempt(
@@ -119,21 +123,27 @@ def _hardware(found: Bill) -> list[Block]:
     for item in found.items:
         way = item.chosen
         if way is None:
-            rows.append([item.spring.name, f"cannot be made: {item.ways[0].reason}", *[""] * 9])
+            rows.append([item.spring.name, f"cannot be made: {item.ways[0].reason}", *[""] * 10])
             continue
         s, about = way.winding.spring, way_dict(item, way, found.options.limits)
         rows.append([
             item.spring.name, way.kind, _plain(way.winding.count), f"{s.wire.standard} {s.wire.name}",
             _plain(s.d / MM), _plain(s.outer / MM), _plain(s.n), _plain(s.free_length / MM),
-            _plain(about["max_force"]), _plain(about["static_margin"]), _plain(1000 * s.mass),
+            _plain(about["max_force"]), _plain(about["static_margin"]), _plain(about["fatigue_margin"]),
+            _plain(1000 * s.mass),
         ])  # fmt: skip
     head = (
         "spring", "made as", "side by side", "wire", "wire d [mm]", "outer d [mm]", "coils", "length [mm]",
-        "largest force [N]", "static margin", "mass each [g]",
+        "largest force [N]", "static margin", "fatigue margin", "mass each [g]",
     )  # fmt: skip
     table = Table.of("Helical springs to wind", head, rows)
+    limits = found.options.limits
+    asked = f"Asked for: a static margin of {limits.safety:g}"
+    asked += f" and a fatigue margin of {limits.fatigue:g} at {limits.cycles:g} cycles." if limits.fatigue else "."
+    said: list[Block] = [Paragraph(asked)]
+    said += [Items(tuple(f"Warning: {text}" for text in found.warnings))] if found.warnings else []
     if found.left is None:
-        return [Paragraph("Within the usual limits not every spring can be made.", strong=True), table]
+        return [Paragraph("Within the usual limits not every spring can be made.", strong=True), *said, table]
     text = f"Built with these springs, their masses and laws included, {100 * found.left.share:.3g} % of the largest "
     text += f"unbalanced torque is left; the springs weigh {1000 * found.mass:.4g} g together."
     balance = found.balance
@@ -142,6 +152,7 @@ def _hardware(found: Bill) -> list[Block]:
     head = ("coordinate", "largest residual", "largest friction of the springs' mounts", "unit")
     return [
         Paragraph(text, strong=True),
+        *said,
         table,
         Table.of("What is left when it is built", head, left),
         Paragraph("Friction is an assumed share of each spring's force, not measured; 'equipoise hardware' lists it."),

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ...balance import Balance, judged
+from ...hardware import Limits
 from ...io import Source
 from ...io.files import check_writable, write_bytes
 from ...model.errors import Fault, InputError, nearest
@@ -32,6 +33,7 @@ def make(
     extras: Iterable[str] = EXTRAS,
     seed: int = 0,
     radius: Amount | None = None,
+    limits: Limits | None = None,
     file: Path | None = None,
     command: str = "",
     progress: Progress | None = None,
@@ -42,6 +44,7 @@ def make(
         extras: of `EXTRAS`, what else to look into; where a mechanism does not allow one, its section says why.
         seed: of the random poses and builds of the extras.
         radius: [m] of the uniform spheres that stand for bodies without an inertia in the simulation.
+        limits: the margins that springs to wind must have.
         file: where the mechanism is from; command: what gives this report again.
 
     Raises:
@@ -52,7 +55,7 @@ def make(
         if name not in EXTRAS:
             raise InputError(Fault(("with",), f"no section {nearest(name, EXTRAS)}", EXTRAS))
     report = progress or silent
-    found = built.run(balance, wanted, seed, radius, report)
+    found = built.run(balance, wanted, seed, radius, limits or Limits(), report)
     report("drawing", 0.0)
     results = {name: getattr(found, name) for name in EXTRAS}
     return Report(
