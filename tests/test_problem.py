@@ -27,10 +27,10 @@ def test_a_problem_with_other_pairs_regions_weights_and_poses():
     first = eq.Problem.of(LIMITED, span=1, radius=0.1)
     other = first.with_pairs([("world", "link3"), ("link3", "world")])
     assert (first.span, other.span, other.pairs) == (1, None, (("world", "link3"),))
-    assert other.attachments["link3"] == eq.Region.ball(0.1)
+    assert other.attachments["link3"] == (eq.Region.ball(0.1),)
     far = eq.Region.box(0.02, (0.2, 0, 0))
     other = other.with_regions({"link3": far}).with_poses(500, seed=2)
-    assert other.attachments == {"link3": far, "world": eq.Region.ball(0.1)}
+    assert other.attachments == {"link3": (far,), "world": (eq.Region.ball(0.1),)}
     assert (first.samples, other.samples, other.seed) == (None, 500, 2)
     design = eq.solve(other, springs=2)
     assert {(s.body_a, s.body_b) for s in design.mechanism.springs} == {("world", "link3")}
@@ -72,8 +72,8 @@ def test_unlimited_poses_leave_the_robot_its_ranges():
 
 def test_enlarged_regions_keep_their_centres():
     problem = eq.Problem.of(ARM, radius=0.1, regions={"link2": eq.Region.ball(0.2, (0, 0, 0.1))}).enlarged(3)
-    assert problem.attachments["link2"] == eq.Region.ball(3 * 0.2, (0, 0, 0.1))
-    assert problem.attachments["world"].half[0] == pytest.approx(0.3)
+    assert problem.attachments["link2"] == (eq.Region.ball(3 * 0.2, (0, 0, 0.1)),)
+    assert problem.attachments["world"][0].half[0] == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from equipoise.synthesis.convex.rank_one import factor
-from equipoise.synthesis.convex.spring_block import ENDS, ONE, SIDE, SpringBlock, svec
+from equipoise.synthesis.convex.spring_block import SpringBlock, svec
 from equipoise.synthesis.region import Region
+
+SIDE, ONE = 7, 3  # of the moment matrix of two whole ends, and the entry between them
+ENDS = [0, 1, 2], [4, 5, 6]
 
 
 def limit(end: list[int]) -> np.ndarray:

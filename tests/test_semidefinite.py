@@ -1,5 +1,7 @@
 """The convex bound against a second solver and a second formulation, and against random designs."""
 
+import itertools
+
 import cvxpy as cp
 import numpy as np
 import pytest
@@ -29,13 +31,22 @@ def by_cvxpy(compressed: least_squares_form.LeastSquaresForm) -> float:
     w = sum(cp.hstack([cp.trace(scale * Q @ M) for Q in Qs]) for Qs, M in zip(every, N, strict=True))
     limits = []
     for pair, M in zip(problem.pairs, N, strict=True):
+        bounded, balls = [], []
         for name, first in zip(pair, (0, 4), strict=True):
-            diagonal = [M[i, i] for i in range(first, first + 3)]
-            limits += (
-                [sum(diagonal) <= M[3, 3]]
-                if problem.attachments[name].shape == "ball"
-                else [d <= M[3, 3] for d in diagonal]
-            )
+            end = range(first, first + 3)
+            if problem.attachments[name][0].shape == "ball":
+                balls.append(list(end))
+                limits.append(sum(M[i, i] for i in end) <= M[3, 3])
+            else:
+                bounded += end
+                limits += [M[i, i] <= M[3, 3] for i in end]
+        for s, t in itertools.product((1, -1), (1, -1)):
+            for i, j in itertools.combinations(bounded, 2):
+                limits.append(M[3, 3] + s * M[3, i] + t * M[3, j] + s * t * M[i, j] >= 0)
+            for i, j, k in itertools.combinations(bounded, 3):
+                limits.append(M[3, 3] + s * M[i, j] + t * M[i, k] + s * t * M[j, k] >= 0)
+        for s, i, ball in itertools.product((1, -1), bounded, balls):
+            limits.append(cp.norm(M[3, ball] + s * M[i, ball]) <= M[3, 3] + s * M[3, i])
     torque = cp.norm(cp.hstack([w + compressed.d, compressed.rest]))
     program = cp.Problem(cp.Minimize(torque), limits)
     program.solve(solver=cp.SCS, eps=1e-7, max_iters=200_000)

@@ -8,7 +8,7 @@ from equipoise.synthesis.convex.blocks import Block
 from equipoise.synthesis.convex.spring_block import SpringBlock, smat, svec
 from equipoise.synthesis.region import Region
 
-BALL_AND_BOX = SpringBlock("world", "arm", Region.ball(0.2, (0, 0, 0.1)), Region.box((0.1, 0.0, 0.3), (0.2, 0, 0)))
+BALL_AND_BOX = SpringBlock("world", "arm", Region.ball(0.2, (0, 0, 0.1)), Region.box((0.1, 0.05, 0.3), (0.2, 0, 0)))
 
 
 def test_svec_keeps_the_inner_product_and_smat_undoes_it():
@@ -36,11 +36,16 @@ def test_quadratic_forms_do_what_their_columns_do():
 
 
 def test_parts_in_their_regions_lie_in_the_cones_and_others_do_not():
-    semidefinite, limits = BALL_AND_BOX.cones()
+    semidefinite, limits, products, *with_ball = BALL_AND_BOX.cones()
     u = BALL_AND_BOX.project(np.random.default_rng(2).uniform(-3, 3, (50, 6)))
     inside = BALL_AND_BOX.part(u).sum(axis=0)
     assert np.linalg.eigvalsh(smat(semidefinite.F @ inside)).min() > 0
     assert (limits.F @ inside >= 0).all()
+    assert (products.F @ inside >= 0).all()
+    assert len(with_ball) == 6
+    for cone in with_ball:
+        first, *others = cone.F @ inside
+        assert first >= np.linalg.norm(others)
     for far in ([1.1, 0, 0, 0, 0, 0], [0.8, 0.8, 0, 0, 0, 0], [0, 0, 0, 1.1, 0, 0], [0, 0, 0, 0, 0, -1.1]):
         assert (limits.F @ BALL_AND_BOX.part(np.array([far]))[0] < 0).sum() == 1
     corner = BALL_AND_BOX.part(np.array([[0.0, 0, 0, 1, 1, 1]]))[0]
@@ -56,8 +61,10 @@ def test_no_end_lies_outside_its_region_rounding_included(shape):
         half = np.full(3, size) if shape == "ball" else size * rng.integers(0, 2, 3) * rng.uniform(0.1, 1, 3)
         region = Region(tuple(centre.tolist()), tuple(half.tolist()), shape)
         block = SpringBlock("world", "link2", region, region)
-        u = block.project(5 * rng.normal(size=(1, 6)) * rng.integers(0, 2, 6))[0]
+        u = block.project(5 * rng.normal(size=(1, block.shape)) * rng.integers(0, 2, block.shape))[0]
         (spring,) = block.add(arm, 100.0, u).springs
         off = np.abs(np.array([spring.p_a, spring.p_b]) - centre)
         assert (np.linalg.norm(off, axis=1) <= size).all() if shape == "ball" else (off <= half).all()
-        np.testing.assert_allclose(off, half * np.abs(u.reshape(2, 3)), rtol=1e-12, atol=1e-13)
+        whole = np.zeros((2, 3))
+        whole[:, region.axes] = u.reshape(2, -1)
+        np.testing.assert_allclose(off, half * np.abs(whole), rtol=1e-12, atol=1e-13)

@@ -55,7 +55,12 @@ def design(
         str | None, typer.Option(help="attachments within this of each body's origin (default: from each link's size)")
     ] = None,
     region: Annotated[
-        list[str] | None, typer.Option(metavar="BODY=RADIUS", help="another radius for one body; may be repeated")
+        list[str] | None,
+        typer.Option(
+            metavar="BODY=REGION",
+            help="for one body: 80mm, 'ball 80 mm at X,Y,Z', 'box 100,0,20 mm at JOINT' (half sides, 0 keeps it flat), "
+            "'point at X,Y,Z'; may be repeated, several of one body are a union",
+        ),
     ] = None,
     box: Annotated[bool, typer.Option("--box", help="regions are boxes of +-radius, not balls")] = False,
     springs: Annotated[int | None, typer.Option(min=1, help="at most this many (default: as few as do)")] = None,
@@ -97,13 +102,14 @@ def design(
     from ..report.figure import check_drawable, save_figure
     from ..synthesis import METHODS, by_name
     from . import options
+    from .regions import regions, sizes
 
     given: dict[str, Any] = {
         "span": span,
         "pairs": None if pairs is None else options.pairs(pairs),
         "radius": None if radius is None else options.length(radius, "--radius"),
         "shape": "box" if box else "ball",
-        "regions": options.regions(region or [], box),
+        "regions": regions(region or [], box),
         "springs": springs,
         "objective": objective,
         "joints": None if joints is None else options.names(joints),
@@ -129,7 +135,7 @@ def design(
     if room is None and thick is not None:
         raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
-    options.sizes(mechanism, given.get("radius"), given.get("regions", {}))
+    sizes(mechanism, given.get("radius"), given.get("regions", {}))
     if output:
         check_savable(output)  # before the work, not after it
     if plot:
@@ -142,7 +148,7 @@ def design(
             found = found.with_diameter(thick)
         if lengths is not None or room is not None:
             report("moving the springs", 0.0)
-            found = found.with_ordinary_springs(lengths, clearance=room, **wound)
+            found = found.with_ordinary_springs(lengths, clearance=room, regions=given.get("regions"), **wound)
         report("judging the design", 0.0)
         balance = found.balance
         if output:

@@ -1,4 +1,4 @@
-"""Values typed on the command line: quantities, pairs, regions."""
+"""Values typed on the command line: quantities, pairs, a method's settings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import terminal
 if TYPE_CHECKING:
     from ..model.mechanism import Mechanism
     from ..model.payload import Payload
-    from ..synthesis import Parameter, Region
+    from ..synthesis import Parameter
 
 FLAGS = {"yes": True, "no": False, "true": True, "false": False}
 
@@ -121,34 +121,6 @@ def pairs(text: str, option: str = "--pairs") -> list[tuple[str, str]]:
         if len(names) != 2 or not all(names):
             raise InputError(Fault((option,), f"expected A:B,C:D with names of bodies, found '{part.strip()}'"))
         found.append((names[0], names[1]))
-    return found
-
-
-def sizes(mechanism: Mechanism, radius: float | None, regions: dict[str, Region]) -> None:
-    """Say which radius is far beyond the mechanism's reach."""
-    given = {"--radius": radius or 0.0}
-    given |= {f"--region {body}": max(region.half) for body, region in regions.items()}
-    terminal.slip([message for name, value in given.items() for message in slips.far(mechanism, value, name)])
-
-
-def regions(texts: list[str], box: bool) -> dict[str, Region]:
-    """``BODY=RADIUS`` as attachment regions around the bodies' origins.
-
-    Raises:
-        InputError: no ``=``, or not a length more than 0.
-    """
-    from ..synthesis import Region
-
-    make = Region.box if box else Region.ball
-    found = {}
-    for text in texts:
-        body, equals, radius = text.rpartition("=")
-        if not equals:
-            raise InputError(Fault(("--region",), f"expected BODY=RADIUS, found '{text}'"))
-        size = length(radius, "--region")
-        if size <= 0:
-            raise InputError(Fault(("--region",), f"must be more than 0 m, found {text}"))
-        found[body.strip()] = make(size)
     return found
 
 

@@ -13,6 +13,7 @@ from ..model.elements import Element, Spring
 from ..model.elements.laws import Law
 from ..model.errors import Fault, InputError, Path
 from ..model.mechanism import SINGLE, Joint, Mechanism
+from .attachment_items import written
 from .schema import SCHEMA
 from .yaml_positions import MAX_DEPTH, resolve
 
@@ -40,6 +41,8 @@ def to_text(mechanism: Mechanism) -> str:
     for section in sections:
         if items := getattr(mechanism, section):
             document[section] = [_item(item) for item in items]
+    if mechanism.attachments:
+        document["attachments"] = [written(one) for one in mechanism.attachments]
     if mechanism.independent:
         document["independent"] = list(mechanism.independent)
     if mechanism.assembly:

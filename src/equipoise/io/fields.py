@@ -113,6 +113,15 @@ Inertias = Annotated[tuple[Inertia, Inertia, Inertia, Inertia, Inertia, Inertia]
 Type = Annotated[JointType, one_of("joint type", JOINT_TYPES)]
 
 
+def point_or_name(value: object) -> object:
+    """A list of 3 lengths [m], or a name."""
+    if isinstance(value, str):
+        return value
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f"expected a list of 3 numbers [m] or the name of a joint, found {show(value)}")
+    return tuple(quantity(length, "length", i) for i, length in enumerate(value))
+
+
 def limits(value: object, info: ValidationInfo) -> tuple[float, float] | None:
     """A range: angles of a revolute joint, lengths of a prismatic one."""
     joint_type = info.data.get("type")

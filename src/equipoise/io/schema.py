@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo, fi
 
 from ..model.errors import COUNTED, Fault, InputError, Path, nearest
 from ..model.mechanism import SINGLE
+from .attachment_items import AttachmentItem
 from .fields import (
     Angle,
     Angles,
@@ -151,6 +152,7 @@ class MechanismFile(Item):
     assembly: dict[str, Any] = Field(default_factory=dict)  # angles or lengths: their joints tell
     springs: list[Annotated[Any, BeforeValidator(of_kind)]] = Field(default_factory=list)
     masses: list[MassItem] = Field(default_factory=list)
+    attachments: list[AttachmentItem] = Field(default_factory=list)
     capsules: list[CapsuleItem] = Field(default_factory=list)
     workspace: WorkspaceItem = WorkspaceItem()
     provenance: dict[str, Any] = Field(default_factory=dict)
@@ -162,6 +164,7 @@ _ITEMS: dict[str, type[Item]] = {
     "couplings": CouplingItem,
     "loops": LoopItem,
     "masses": MassItem,
+    "attachments": AttachmentItem,
     "capsules": CapsuleItem,
     "workspace": WorkspaceItem,
     "dh": DhTable,

@@ -75,6 +75,7 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             springs=springs,
             masses=tuple(PointMass(**item.values()) for item in file.masses),
             capsules=tuple(Capsule(**item.values()) for item in file.capsules),
+            attachments=tuple(item.attachment() for item in file.attachments),
             gravity=tree.gravity or file.gravity,
             workspace=Workspace(**file.workspace.values()),
             provenance=file.provenance,

@@ -15,6 +15,7 @@ from .coordinate import Coordinate, Slide
 from .elements import Element, Vec3
 from .errors import InputError
 from .immutable import immutable
+from .region import Attachment
 from .validate import faults
 
 WORLD = "world"
@@ -131,6 +132,7 @@ class Mechanism:
         provenance: how it was made, as a file says it: text, numbers, None, lists and mappings, all made immutable.
         independent: of a mechanism with loops, the coordinates that determine the others; chosen by itself when empty.
         assembly: coordinate values [rad or m] near a pose in which the loops close.
+        attachments: where springs may be attached when they are designed; of other bodies nothing is said.
 
     Raises:
         InputError: with one `Fault` for every inconsistency (see `validate.faults`).
@@ -149,6 +151,7 @@ class Mechanism:
     independent: tuple[str, ...] = ()
     assembly: tuple[tuple[str, float], ...] = ()
     capsules: tuple[Capsule, ...] = ()
+    attachments: tuple[Attachment, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", immutable(self.provenance))

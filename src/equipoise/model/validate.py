@@ -28,6 +28,7 @@ LARGEST_COUNTS = {
     "springs": 500,
     "masses": 500,
     "capsules": 500,
+    "attachments": 500,
 }
 """What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
@@ -37,7 +38,7 @@ def faults(mechanism: Mechanism) -> list[Fault]:
     too_many = list(_sizes(mechanism))
     if too_many:
         return too_many
-    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch)
+    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch, _attachments)
     return list(islice((fault for check in checks for fault in check(mechanism)), COUNTED))
 
 
@@ -250,6 +251,17 @@ def _branch(m: Mechanism) -> Iterator[Fault]:
     for name, value in m.assembly:
         if not isfinite(value):
             yield Fault(("assembly", name), "must be finite")
+
+
+def _attachments(m: Mechanism) -> Iterator[Fault]:
+    for i, one in enumerate(m.attachments):
+        path: Path = ("attachments", i)
+        yield from known((*path, "body"), one.body, "body", ("world", *(body.name for body in m.bodies)))
+        yield from one.region.faults(path)
+        try:
+            one.region.on(one.body, m.joints)
+        except InputError as error:
+            yield from (replace(fault, path=(*path, *fault.path)) for fault in error.faults)
 
 
 def _list(names: Iterable[str]) -> str:

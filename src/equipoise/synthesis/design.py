@@ -176,7 +176,7 @@ class Design(Shown):
         unbalanced = sqrt(float(sum(found.balance.unbalanced.rms**2)))
         samples = found.balance.certificate.samples
         given = {**self.free_parameters, "free_length": dict(found.free_length)}
-        given |= {name: getattr(asked, name) for name in options}
+        given |= {name: getattr(asked, name) for name in options if name != "regions"}  # it has them
         return replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
             joints=None, averaged=False, samples=samples, loads=(), free_parameters=given, ordinary=found,

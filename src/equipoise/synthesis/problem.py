@@ -19,6 +19,7 @@ from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
+from ..model.region import SHAPES, Shape
 from ..model.units import Amount
 from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.blocks import Block
@@ -27,7 +28,7 @@ from .given import number
 from .load import OWN, Load
 from .mounts import Mounts
 from .options import Options, option, takes
-from .region import SHAPES, Region, Shape
+from .region import Given, Region, given_regions
 
 __all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
 
@@ -45,7 +46,8 @@ class ProblemOptions(Options):
         pairs: the pairs of bodies that may be joined by springs.
         radius: [m] of every region without one of its own in `regions`; by default from each link's size.
         shape: of those regions, ball or box.
-        regions: body -> where springs may be attached to it; a length is the region of that radius and `shape`.
+        regions: body -> where springs may be attached to it, several regions are a union, a length is the region of
+            that radius and `shape`; by default the `attachments` of the mechanism.
         objective: "rms" (mean square over configurations and joints) or "peak" (the largest torque).
         joints: the joints or coordinates whose torque counts, all by default; a spherical joint stands for its three.
         weights: joint or coordinate -> the factor by which its torque counts, 1 where none is given.
@@ -62,7 +64,7 @@ class ProblemOptions(Options):
     pairs: Iterable[Pair] | None = None
     radius: Amount | None = option(None, "length", "of every attachment region (default: from each link's size)")
     shape: Shape = "ball"
-    regions: Mapping[str, Region | Amount] | None = None
+    regions: Mapping[str, Given] | None = None
     objective: Objective = option("rms", "text", "what is minimised (default rms torque)", OBJECTIVES)
     joints: Iterable[str] | None = option(None, "names", "A,B,...: the joints whose torque counts (default: all)")
     weights: Mapping[str, float] | None = option(
@@ -81,7 +83,8 @@ class Problem:
 
     Attributes:
         pairs: the pairs of bodies that may be joined by springs; `span` is set where they come from one.
-        regions: body -> attachment region, where one is given; `attachments` has those of every body in `pairs`.
+        regions: body -> attachment regions, where some are given, here or in the mechanism; `attachments` has those of
+            every body in `pairs`.
         radius, shape: of the other regions [m]; by default from each link's size.
         beside: other blocks of unknowns than the springs of the pairs.
         objective, joints, weights, samples, seed, unlimited, keep, loads: see `ProblemOptions`.
@@ -93,7 +96,7 @@ class Problem:
 
     mechanism: Mechanism
     pairs: tuple[Pair, ...]
-    regions: Mapping[str, Region] = field(default_factory=dict)
+    regions: Mapping[str, Given] = field(default_factory=dict)
     objective: Objective = "rms"
     joints: tuple[str, ...] | None = None
     weights: Mapping[str, float] = field(default_factory=dict)
@@ -136,7 +139,7 @@ class Problem:
         self._set("pairs", _distinct(_known(self.mechanism, "pairs", p) for p in self.pairs))
         if not self.pairs and not self.beside:
             raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
-        self._set("regions", {body: Region.of(given, body, self.shape) for body, given in self.regions.items()})
+        self._set("regions", given_regions(self.mechanism, self.regions, self.shape))
         self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
         self._set("weights", _weights(self.judged, self.weights))
         self._set("loads", tuple(self.loads))
@@ -145,7 +148,8 @@ class Problem:
             raise InputError(Fault(("loads",), f"must be one or more with different names, found {names}"))
         reach = Mounts.of(self.judged).reach
         for name in dict.fromkeys(name for pair in self.pairs for name in pair):
-            self.attachments[name].check(name, reach)
+            for region in self.attachments[name]:
+                region.check(name, reach)
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
@@ -154,7 +158,7 @@ class Problem:
         """The same problem on other pairs."""
         return replace(self, pairs=tuple(pairs), span=None)
 
-    def with_regions(self, regions: Mapping[str, Region | Amount]) -> Problem:
+    def with_regions(self, regions: Mapping[str, Given]) -> Problem:
         """The same problem with other attachment regions for some bodies."""
         return replace(self, regions={**self.regions, **regions})
 
@@ -172,23 +176,24 @@ class Problem:
 
     def enlarged(self, factor: float) -> Problem:
         """The same problem with every region enlarged about its centre."""
-        return self.with_regions({name: region.times(factor) for name, region in self.attachments.items()})
+        larger = {name: [region.times(factor) for region in own] for name, own in self.attachments.items()}
+        return self.with_regions(larger)
 
     @cached_property
-    def attachments(self) -> Mapping[str, Region]:
-        """The attachment region of every body named in `pairs`, and of the others that one is given for."""
+    def attachments(self) -> Mapping[str, tuple[Region, ...]]:
+        """The attachment regions of every body named in `pairs`, and of the others that some are given for."""
         mounts = Mounts.of(self.judged)
         make = Region.ball if self.shape == "ball" else Region.box
-        found = dict(self.regions)
+        found = given_regions(self.mechanism, self.regions, self.shape)
         for name in (name for pair in self.pairs for name in pair if name not in found):
-            found[name] = make(mounts.default_radius(name) if self.radius is None else self.radius)
+            found[name] = (make(mounts.default_radius(name) if self.radius is None else self.radius),)
         return found
 
     @cached_property
     def blocks(self) -> tuple[Block, ...]:
-        """The unknowns: the springs of each pair, and what is beside them."""
-        regions = self.attachments
-        return (*(SpringBlock(a, b, regions[a], regions[b]) for a, b in self.pairs), *self.beside)
+        """The unknowns: the springs between every two regions of each pair, and what is beside them."""
+        at = self.attachments
+        return (*(SpringBlock(a, b, p, q) for a, b in self.pairs for p in at[a] for q in at[b]), *self.beside)
 
     @cached_property
     def kept(self) -> Mechanism:

@@ -179,7 +179,7 @@ def _rows(search: SpringSearch) -> Iterator[FrontRow]:
 
 def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
     problem = reduced.problem
-    own = tuple(block.place for block in reduced.blocks)
+    own = tuple(dict.fromkeys(block.place for block in reduced.blocks))
     present = {frozenset(pair) for pair in own}
     mounts = Mounts.of(problem.judged)
     # a large mechanism has hundreds of other pairs: the nearest ones are tried
@@ -190,14 +190,14 @@ def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
     whole = reduced.averaged and Tree.of(problem.judged).turns.all()
     wider = wider.with_poses(unlimited=True) if whole else replace(wider, samples=FEW)
     wide = build(wider)
-    number = {block.place: i for i, block in enumerate(wide.blocks)}
+    numbers = {place: [i for i, b in enumerate(wide.blocks) if b.place == place] for place in (*own, *missing)}
     unit = reduced.unbalanced
     try:
         far = least_rms(reduced.enlarged(FAR)).value
     except EquipoiseError:
         far = 0.0  # not known
-    remedies = _remedies(wide, [number[place] for place in own], [number[pair] for pair in missing])
-    places = tuple(wide.blocks[i].place for i in remedies)
+    remedies = _remedies(wide, [i for place in own for i in numbers[place]], [numbers[pair] for pair in missing])
+    places = tuple(wide.blocks[i].place for i, *_ in remedies)
     return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing))
 
 
@@ -209,9 +209,12 @@ def _feasible(reduced: LeastSquaresForm) -> bool:
         return False
 
 
-def _remedies(wide: LeastSquaresForm, stay: list[int], others: list[int]) -> list[int]:
-    """Those of the others any one of which makes exact balance possible: none where all together do not."""
-    if not others or not _feasible(wide.on([*stay, *others])):
+def _remedies(wide: LeastSquaresForm, stay: list[int], others: list[list[int]]) -> list[list[int]]:
+    """Those of the others, each the blocks of a pair, any of which makes exact balance possible.
+
+    None where all together do not.
+    """
+    if not others or not _feasible(wide.on([*stay, *(i for blocks in others for i in blocks)])):
         return []
     size = len(others) // 2 if len(others) > SINGLY else 1
     groups = [others[i : i + size] for i in range(0, len(others), size)] if len(others) > 1 else []
@@ -224,8 +227,8 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
         **({"span": problem.span} if problem.span is not None else {}),
         "pairs": [list(pair) for pair in problem.pairs],
         "regions": {
-            name: {"shape": region.shape, "centre": list(region.centre), "half": list(region.half)}
-            for name, region in problem.attachments.items()
+            name: own[0].to_dict() if len(own) == 1 else [region.to_dict() for region in own]
+            for name, own in problem.attachments.items()
         },
         "springs": options.springs,
         "objective": problem.objective,

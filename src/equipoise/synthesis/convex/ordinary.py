@@ -28,7 +28,7 @@ from ...model.mechanism import Mechanism
 from ...model.units import Amount
 from ...model.validate import MAX_SAMPLES, whole_number
 from ..options import Options, option, takes
-from ..problem import Region
+from ..region import Given, given_regions
 from .ordinary_fit import FREE_LENGTHS, Fit
 
 ROOM_ROUNDS = 8  # of adding the poses with too little room
@@ -100,7 +100,8 @@ class OrdinaryOptions(Options):
         free_length: of all springs, or spring -> free length [m], and other springs stay as they are; by default all
             springs move and have the free lengths that they have.
         clearance: [m] what every spring keeps from other springs and from links that it is not fixed to.
-        regions: where the ends on a body may be; by default a ball as large as they are away from its origin.
+        regions: where the ends on a body may be, as in a `Problem`; by default the `attachments` of the mechanism, else
+            a ball as large as they are away from its origin.
         stiffness_factor: stiffness stays between its old value over this and times this.
         preload: the share of the free length that initial tension may take away; a rod in series may double it.
         poses: random ones that the residual torque is minimised on, root mean square.
@@ -110,7 +111,7 @@ class OrdinaryOptions(Options):
     free_length: Amount | Mapping[str, Amount] | None = option(None, "length", "of the springs")
     _: KW_ONLY
     clearance: Amount | None = option(None, "length", "what springs keep from each other and from links")
-    regions: Mapping[str, Region | Amount] | None = None
+    regions: Mapping[str, Given] | None = None
     stiffness_factor: Amount = option(5.0, "number", "by which stiffness may change")
     preload: Amount = option(0.0, "share", "of the free length that initial tension may take away")
     poses: int = 200
@@ -128,7 +129,7 @@ def ordinary(mechanism: Source, options: OrdinaryOptions) -> Ordinary:
     mechanism = loaded(mechanism)
     stiffness_factor, preload = float(options.stiffness_factor), float(options.preload)
     clearance = None if options.clearance is None else float(options.clearance)
-    regions = {body: Region.of(given, body) for body, given in (options.regions or {}).items()}
+    regions = given_regions(mechanism, options.regions or {})
     lengths = _lengths(mechanism, options.free_length)
     if not (1 <= stiffness_factor < np.inf and 0 <= preload <= 1):
         raise InputError("stiffness_factor must be at least 1 and preload a share from 0 to 1")

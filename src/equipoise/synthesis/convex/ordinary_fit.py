@@ -17,7 +17,7 @@ from ...model.arrays import Array, vec3
 from ...model.elements import lines
 from ...model.mechanism import Mechanism
 from ..problem import Problem
-from ..region import Region, project
+from ..region import Region, nearest_region, project
 from .spring_block import at_ends, between, stretch
 
 WIDTH = 8  # unknowns of a spring: log stiffness, u_a, u_b in their regions' coordinates (as in `polish`), preload
@@ -36,7 +36,7 @@ class Fit:
         self,
         mechanism: Mechanism,
         lengths: Mapping[str, float],
-        regions: Mapping[str, Region],
+        regions: Mapping[str, tuple[Region, ...]],
         q: Array,
         penalty: Penalty | None,
     ) -> None:
@@ -47,11 +47,13 @@ class Fit:
         tree = Tree.of(mechanism)
         pairs = tuple((s.body_a, s.body_b) for s in self.springs)
         ends = [end for s in self.springs for end in ((s.body_a, s.p_a), (s.body_b, s.p_b))]
-        own = {b: Region.ball(max(float(np.linalg.norm(p)) for c, p in ends if c == b)) for b, _ in ends}
-        own = {body: region for body, region in own.items() if region.half[0] > 0}  # else as large as its link
+        far = {b: max(float(np.linalg.norm(p)) for c, p in ends if c == b) for b, _ in ends if b not in regions}
+        own = {body: Region.ball(radius) for body, radius in far.items() if radius > 0}  # else as large as its link
         self.problem = Problem.of(mechanism, pairs=pairs, regions=own | dict(regions))
-        self.lift = np.array([[self.problem.attachments[b].lift for b in pair] for pair in pairs])  # (springs, 2, 4, 4)
-        self.box = np.array([[self.problem.attachments[b].shape == "box" for b in pair] for pair in pairs])
+        found = [nearest_region(self.problem.attachments[b], p) for b, p in ends]
+        self.regions = list(zip(found[::2], found[1::2], strict=True))  # of both ends of each spring
+        self.lift = np.array([[region.lift for region in pair] for pair in self.regions])  # (springs, 2, 4, 4)
+        self.box = np.array([[region.shape == "box" for region in pair] for pair in self.regions])
         poses = tree.poses(q)
         velocities = tree.velocities(q, poses)
         self.Z, self.dZ = zip(*(stretch(poses, velocities, *(tree.index[b] for b in p)) for p in pairs), strict=True)
@@ -112,19 +114,26 @@ class Fit:
         return x, float(r @ r)
 
     def mechanism_of(self, x: Array) -> Mechanism:
-        k, p, free = self._values(x)
+        k, _, free = self._values(x)
+        ends = [
+            [vec3(region.inside(u)) for region, u in zip(*both, strict=True)]
+            for both in zip(self.regions, self._shapes(x), strict=True)
+        ]
         new = {
-            s.name: replace(s, stiffness=float(k[i]), p_a=vec3(p[i, 0]), p_b=vec3(p[i, 1]), free_length=float(free[i]))
+            s.name: replace(s, stiffness=float(k[i]), p_a=ends[i][0], p_b=ends[i][1], free_length=float(free[i]))
             for i, s in enumerate(self.springs)
         }
         return self.mechanism.with_springs(new.get(s.name, s) for s in self.mechanism.springs)
 
     def _values(self, x: Array) -> tuple[Array, Array, Array]:
         """Stiffness (springs,), attachments (springs, 2, 3) [m], free lengths (springs,) [m]."""
+        p = np.einsum("seij,sej->sei", self.lift[..., :3, :3], self._shapes(x)) + self.lift[..., :3, 3]
         x = x.reshape(-1, WIDTH)
-        u = project(x[:, 1:7].reshape(-1, 2, 3), self.box)
-        p = np.einsum("seij,sej->sei", self.lift[..., :3, :3], u) + self.lift[..., :3, 3]
         return np.exp(x[:, 0]), p, self.free * (1 + x[:, 7])
+
+    def _shapes(self, x: Array) -> Array:
+        """(springs, 2, 3) attachments in their regions' own coordinates."""
+        return project(x.reshape(-1, WIDTH)[:, 1:7].reshape(-1, 2, 3), self.box)
 
     def evaluate(self, x: Array) -> tuple[Array, Array]:
         """Rows: residual torque as a share of the unbalanced one, slack, what else is asked for; and their Jacobian."""
