@@ -49,6 +49,10 @@ def design(
     plot: Annotated[Path | None, typer.Option(help="write a figure: .svg, .png or .pdf")] = None,
     method: Annotated[str, typer.Option(help="see `equipoise methods`")] = "convex",
     set_: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="a method's parameter")] = None,
+    joint: Annotated[
+        str | None, typer.Option(help="cam: the joint it is on, or a sum such as shoulder+elbow (see docs/cams.md)")
+    ] = None,
+    stock: Annotated[Path | None, typer.Option(metavar="LIST", help="cam: take the spring from this list")] = None,
     span: Annotated[int, typer.Option(min=1, help="springs join bodies at most this many moving joints apart")] = 2,
     pairs: Annotated[str | None, typer.Option(metavar="A:B,...", help="the pairs of bodies instead of a span")] = None,
     radius: Annotated[
@@ -128,6 +132,7 @@ def design(
         for name in given.keys() & more.keys():
             raise InputError(f"--{name} and --set {name} both give '{name}': leave out one of them")
         given |= more
+    given |= options.for_cam(method, joint, stock)
     wound = {"stiffness_factor": stiffness_factor, "preload": share(preload, "--preload")}
     lengths = options.free_lengths(free_length or [])
     room = None if clearance is None else options.length(clearance, "--clearance")

@@ -69,12 +69,15 @@ class SpringUse:
         return max(map(abs, self.force))
 
     def to_dict(self, spring: Element) -> dict[str, Any]:
-        """The spring's entry in ``check --json``; `states` where it can be in any, `friction` where it has some."""
+        """The spring's entry in ``check --json``; `states` where it can be in any, `friction` where it has some, and
+        `made` where what it is made of is known too."""
         entry = spring.to_dict(self.path, self.force)
         if spring.law.states or spring.wheels:
             entry["states"] = [one.to_dict() for one in self.reached]
         if self.margin:
             entry["friction"] = list(self.margin)
+        if (made := spring.law.comparison(*self.path)) is not None:
+            entry["made"] = made.to_dict()
         return entry
 
 

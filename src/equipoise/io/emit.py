@@ -11,6 +11,7 @@ from typing import Any
 
 from ..model.elements import Element, Spring
 from ..model.elements.laws import Law
+from ..model.elements.laws.profile import CamSpring, Profile
 from ..model.errors import Fault, InputError, Path
 from ..model.mechanism import SINGLE, Joint, Mechanism
 from .attachment_items import written
@@ -68,8 +69,12 @@ def _item(item: Any) -> dict[str, Any]:
             continue
         if f.name == "name" and isinstance(item, Element) and not isinstance(item, Spring):
             out |= {"name": value, "kind": item.kind}
-        elif isinstance(value, Law):
+        elif isinstance(value, Law | Profile):
             out |= _item(value)
+        elif isinstance(value, CamSpring):
+            out[f.name] = _Line({"kind": value.law.kind, **_item(value)})
+        elif dataclasses.is_dataclass(value):
+            out[f.name] = _Line(_item(value))
         elif f.name == "joints" and [ratio for _, ratio in value] == [1.0]:
             out["joint"] = value[0][0]
         elif f.name in ("terms", "joints"):

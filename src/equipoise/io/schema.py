@@ -34,7 +34,7 @@ from .fields import (
     show,
     whole,
 )  # fmt: skip
-from .spring_items import GuideItem, of_kind, spring_model
+from .spring_items import of_kind, part_model
 
 SCHEMA = 1
 
@@ -222,7 +222,8 @@ def _model(path: Path, data: Any) -> type[Item]:
         return MechanismFile
     section, *inside = path
     if section == "springs" and inside:
-        return GuideItem if "via" in inside else spring_model(data["springs"][inside[0]])
+        number, *keys = inside
+        return part_model(data["springs"][number], keys[0] if keys else "")
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

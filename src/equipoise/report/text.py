@@ -101,6 +101,9 @@ def spring_lines(balance: Balance) -> Iterator[Text]:
     """Each spring: how strong, where, and its greatest use."""
     for spring, use in zip(balance.mechanism.springs, balance.use, strict=True):
         yield Text(spring.sentence(use.path, use.force))
+        if (made := spring.law.comparison(*use.path)) is not None:
+            yield Text(f"  {made}")
+            yield from (Text(f"  {fault}", "bold red") for fault in made.faults)
         for one in use.reached:
             style = "bold red" if one.state.limit else "yellow"
             yield Text(

@@ -8,6 +8,7 @@ from typing import Any, Literal, ParamSpec, Protocol, cast, overload
 from ..io import Source, loaded
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
 from .bevel import method as bevel
+from .cam import method as cam
 from .convex import method as convex
 from .convex.method import ConvexOptions
 from .delta import method as delta
@@ -24,6 +25,7 @@ _MODULES = (
     no_auxiliary,
     bevel,
     delta,
+    cam,
 )
 METHODS: dict[str, Method] = {module.METHOD.name: module.METHOD for module in _MODULES}
 
@@ -33,9 +35,10 @@ P = ParamSpec("P")
 N = ParamSpec("N")
 S = ParamSpec("S")
 D = ParamSpec("D")
+K = ParamSpec("K")
 
 
-class _ByMethod(Protocol[C, B, P, N, S, D]):
+class _ByMethod(Protocol[C, B, P, N, S, D, K]):
     """What editors and type checkers know of `design`: for each method the options of its type."""
 
     @overload
@@ -56,6 +59,8 @@ class _ByMethod(Protocol[C, B, P, N, S, D]):
     def __call__(self, mechanism: Source, method: Literal["bevel"], *args: S.args, **options: S.kwargs) -> Design: ...
     @overload
     def __call__(self, mechanism: Source, method: Literal["delta"], *args: D.args, **options: D.kwargs) -> Design: ...
+    @overload
+    def __call__(self, mechanism: Source, method: Literal["cam"], *args: K.args, **options: K.kwargs) -> Design: ...
 
 
 def _typed(
@@ -65,9 +70,10 @@ def _typed(
     no_auxiliary: Callable[N, Any],
     bevel: Callable[S, Any],
     delta: Callable[D, Any],
-) -> Callable[[Callable[..., Design]], _ByMethod[C, B, P, N, S, D]]:
+    cam: Callable[K, Any],
+) -> Callable[[Callable[..., Design]], _ByMethod[C, B, P, N, S, D, K]]:
     """Decorate `design` with the types of all methods' options; at run time it stays as it is."""
-    return lambda function: cast("_ByMethod[C, B, P, N, S, D]", function)
+    return lambda function: cast("_ByMethod[C, B, P, N, S, D, K]", function)
 
 
 def by_name(mechanism: Source, method: str, **options: Any) -> Design:
@@ -92,6 +98,7 @@ def by_name(mechanism: Source, method: str, **options: Any) -> Design:
     no_auxiliary.NoAuxiliaryOptions,
     bevel.BevelOptions,
     delta.DeltaOptions,
+    cam.CamOptions,
 )
 def design(mechanism: Source, method: str = "convex", **options: Any) -> Design:
     """Design springs for a mechanism.

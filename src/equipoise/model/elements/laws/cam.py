@@ -1,4 +1,7 @@
-"""The law of a cam or a non-circular pulley: its energy on an angle, as a table or as a Fourier series."""
+"""The law of a cam or a non-circular pulley: its energy on an angle, as a table or as a Fourier series.
+
+Its profile may be there too, with what runs on it; then it is told how well the profile gives that energy.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import Fault, finite
-from .law import Law, State, Terms, listed
+from .law import Law, State, Terms, listed, plain
 from .pieces import Pieces
+from .profile import Comparison, Profile
 from .table import Points, of_points, outside
 
 if TYPE_CHECKING:
@@ -35,6 +39,7 @@ class Cam(Law):
     Attributes:
         points: of angle [rad] and energy [J].
         cosine, sine: [J], of one, two, three .. times the angle.
+        made: the profile that gives it, and what runs on it; the energy stands beside it.
     """
 
     kind: ClassVar[str] = "cam"
@@ -43,6 +48,7 @@ class Cam(Law):
     points: Points = listed("path", "energy", default=())
     cosine: tuple[float, ...] = listed("energy", default=())
     sine: tuple[float, ...] = listed("energy", default=())
+    made: Profile | None = None
 
     @property
     def harmonics(self) -> list[tuple[int, float, float]]:
@@ -107,13 +113,32 @@ class Cam(Law):
                 yield Fault((name,), f"at most {HARMONICS} are worked with, found {len(getattr(self, name))}")
         if series and not self.harmonics:
             yield Fault(("cosine",), "is 0 all through: such a cam does nothing")
+        if self.made is not None:
+            yield from self.made.faults()
 
     def values(self) -> dict[str, Any]:
-        return {name: value for name, value in super().values().items() if value}
+        own = {name: plain(getattr(self, name)) for name in ("points", "cosine", "sine")}
+        return {name: value for name, value in own.items() if value} | (self.made.values() if self.made else {})
 
     @property
     def states(self) -> tuple[State, ...]:
-        return outside(self.points) if self.points else ()
+        if self.points or self.made is None:
+            return outside(self.points) if self.points else ()
+        angle = self.made.run.angle
+        return (
+            State("below its profile", float(angle.min()), above=False, limit=True),
+            State("beyond its profile", float(angle.max()), above=True, limit=True),
+        )
+
+    @property
+    def margin(self) -> float:
+        if self.made is None or not self.made.friction:
+            return 0.0
+        angle = self.made.run.angle
+        return self.made.friction * max(map(abs, self.extremes(float(angle.min()), float(angle.max()))))
+
+    def comparison(self, low: float, high: float) -> Comparison | None:
+        return None if self.made is None else Comparison.of(self.made, self, low, high)
 
     @property
     def strength(self) -> tuple[float, str]:
@@ -129,4 +154,5 @@ class Cam(Law):
         return replace(
             self, points=tuple((s, factor * energy) for s, energy in self.points),
             cosine=tuple(factor * x for x in self.cosine), sine=tuple(factor * x for x in self.sine),
+            made=self.made and self.made.scaled(factor),
         )  # fmt: skip

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ....energy.fourier.frames import Frames
     from ....energy.fourier.series import Series
     from ....energy.kernel.trace import Trace, Value
+    from .profile import Comparison
 
 Terms = tuple[tuple[str, float], ...]
 """Joints, each with its ratio."""
@@ -171,6 +172,10 @@ class Law(ABC):
     def margin(self) -> float:
         """Friction [N or N m], either way; not in the force."""
         return 0.0
+
+    def comparison(self, low: float, high: float) -> Comparison | None:
+        """How what it is made of compares with it between two paths; None where nothing is said of that."""
+        return None
 
     @property
     def strength(self) -> tuple[float, str]:

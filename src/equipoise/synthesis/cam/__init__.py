@@ -1,0 +1,1 @@
+"""Non-circular pulleys and cams: a spring that can be bought balances a joint exactly."""
