@@ -87,9 +87,8 @@ def spring(law: dict[str, Any], drawn: float) -> tuple[float, float, float]:
     if law["kind"] == "compression":
         force = law["stiffness"] * (law["free_length"] + drawn)
         return -drawn, force, force**2 / (2 * law["stiffness"])
-    force = law.get("initial_tension", 0.0) + law["stiffness"] * (
-        drawn - law.get("body_length", law.get("free_length"))
-    )
+    free = law["body_length"] if law["kind"] == "extension" else law["free_length"]
+    force = law.get("initial_tension", 0.0) + law["stiffness"] * (drawn - free)
     return drawn, force, force**2 / (2 * law["stiffness"])
 
 

@@ -18,7 +18,19 @@ from ..model.progress import Progress
 from ..model.units import SI_UNITS, quantity, share
 
 Kind = Literal[
-    "length", "angle", "mass", "stiffness", "torque", "number", "share", "whole", "text", "names", "pairs", "flag"
+    "length",
+    "angle",
+    "mass",
+    "stiffness",
+    "force",
+    "torque",
+    "number",
+    "share",
+    "whole",
+    "text",
+    "names",
+    "pairs",
+    "flag",
 ]
 P = ParamSpec("P")
 Value = TypeVar("Value")

@@ -42,9 +42,6 @@ def made(search: Search, trial: Trial, i: int, friction: float, diameter: float)
     ends = _bends(points)
     if roller:
         lengths = [OVER * float(e.reach.min())] * 2
-        line = Roller(
-            wishes.roller or 0.0, wishes.bearing, wishes.offset, a + (start if offer.kind in PUSHING else -start)
-        )
     else:
         ends = [float(sign / r) for sign, r in zip(np.sign(ends), radius[[0, -1]], strict=True)]
         first, last = np.minimum(radius[[0, -1]], wishes.size / 2)
@@ -53,6 +50,8 @@ def made(search: Search, trial: Trial, i: int, friction: float, diameter: float)
     after = _arc(points[-1], along[-1], ends[1], lengths[1], 4)
     rim = _pairs(np.vstack([before[::-1], points, after]))
     if roller:
+        seat = a + (start if offer.kind in PUSHING else -start)
+        line = Roller(wishes.roller or 0.0, wishes.bearing, wishes.offset, seat)
         found = Profile(rim, spring, body, roller=line, friction=friction)
     else:
         point = (a * cos(wishes.bearing), a * sin(wishes.bearing))
@@ -117,9 +116,9 @@ def _sound(profile: Profile, wanted: Wanted) -> bool:
         turned = profile.roller.direction - profile.turn * run.angle
         x, y = run.free, profile.roller.offset
         centre = np.stack([x * np.cos(turned) - y * np.sin(turned), x * np.sin(turned) + y * np.cos(turned)], axis=1)
-        gap = np.hypot(*(centre[::8, None] - points[None]).T).T.min(axis=1) - profile.roller.radius
+        gap = np.linalg.norm(centre[::8, None] - points[None], axis=-1).min(axis=1) - profile.roller.radius
         return bool((gap > -TOUCH).all())
     step = np.gradient(run.contact, axis=0)
-    normal = np.stack([step[:, 1], -step[:, 0]], axis=1) / np.hypot(*step.T)[:, None]
+    normal = np.stack([step[:, 1], -step[:, 0]], axis=1) / np.linalg.norm(step, axis=1)[:, None]
     height = (points[None] - run.contact[::8, None]) @ normal[::8, :, None]
     return bool(min(height.max(), -height.min()) < TOUCH)

@@ -111,7 +111,7 @@ class Trial:
     valid: Booleans
     score: Array
 
-    def take(self, index: Array) -> Trial:
+    def take(self, index: Integers) -> Trial:
         """Some of them."""
         return Trial(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
 
