@@ -9,6 +9,7 @@ from ..io import Source, loaded
 from ..model.errors import Fault, InputError, UnsupportedError, nearest
 from .bevel import method as bevel
 from .cam import method as cam
+from .cam.options import CamOptions
 from .convex import method as convex
 from .convex.method import ConvexOptions
 from .delta import method as delta
@@ -98,7 +99,7 @@ def by_name(mechanism: Source, method: str, **options: Any) -> Design:
     no_auxiliary.NoAuxiliaryOptions,
     bevel.BevelOptions,
     delta.DeltaOptions,
-    cam.CamOptions,
+    CamOptions,
 )
 def design(mechanism: Source, method: str = "convex", **options: Any) -> Design:
     """Design springs for a mechanism.

@@ -14,9 +14,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import Fault, finite
+from .comparison import Comparison
 from .law import Law, State, Terms, listed, plain
 from .pieces import Pieces
-from .profile import Comparison, Profile
+from .profile import Profile
 from .table import Points, of_points, outside
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ....energy.fourier.frames import Frames
     from ....energy.fourier.series import Series
     from ....energy.kernel.trace import Trace, Value
-    from .profile import Comparison
+    from .comparison import Comparison
 
 Terms = tuple[tuple[str, float], ...]
 """Joints, each with its ratio."""

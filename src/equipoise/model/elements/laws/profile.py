@@ -11,25 +11,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from itertools import pairwise
-from math import hypot, inf, isfinite
+from math import hypot, isfinite
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array, frozen
 from ...errors import Fault, at_least, finite, positive
+from .curve import Curve
 from .law import Law, plain
 from .table import Points
 
 Pair = tuple[float, float]
-FINE = 8  # parts of the curve between two points
 MOST = 2000
 """Points of a profile."""
 FIXED_TO = ("child", "parent")
-COMPARED = 721  # angles at which it is compared with the energy
-CLOSE = 0.005
-"""Share of the largest torque that a profile may differ by from the energy that it stands for."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +146,7 @@ class Profile:
     @cached_property
     def run(self) -> Run:
         """What it gives along its points."""
-        curve = _Curve.through(self.profile)
+        curve = Curve.through(self.profile)
         with np.errstate(invalid="ignore", divide="ignore"):
             turned, drawn, slope, free, lean, radius = (self._cable if self.cable else self._roller)(curve)
         length = -drawn if self.pushes else drawn
@@ -162,7 +158,7 @@ class Profile:
         rows = tuple(row[order] for row in rows)
         return Run(*rows, folds=not (np.diff(rows[0]) > 0).all())
 
-    def _cable(self, c: _Curve) -> tuple[Array, ...]:
+    def _cable(self, c: Curve) -> tuple[Array, ...]:
         """Of each point of the curve: how far the profile is turned, how far the spring is drawn and its slope, what is
         free of the cable, its lean, and the radius of curvature."""
         assert self.cable is not None
@@ -176,7 +172,7 @@ class Profile:
         convex = np.sign(np.median(c.curvature))
         return _near(turned), drawn, -h, free, np.zeros_like(h), _inverse(convex * c.curvature)
 
-    def _roller(self, c: _Curve) -> tuple[Array, ...]:
+    def _roller(self, c: Curve) -> tuple[Array, ...]:
         assert self.roller is not None
         r, e = self.roller.radius, self.roller.offset
         left = np.stack([-c.along[:, 1], c.along[:, 0]], axis=1)
@@ -226,126 +222,6 @@ class Profile:
             yield Fault(("fixed_to",), f"unknown body '{self.fixed_to}'", FIXED_TO)
         if not (isfinite(self.friction) and 0 <= self.friction < 1):
             yield Fault(("friction",), f"must be a share from 0 to 1, found {self.friction:g}")
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """How well a profile gives the energy that stands beside it, over the angles that are used.
-
-    Attributes:
-        low, high: these angles [rad].
-        peak: the largest torque of the energy [N m]; off: by how much the profile's differs at the most.
-        energy: by how much the difference of the energies varies [J].
-    """
-
-    made: Profile
-    low: float
-    high: float
-    peak: float
-    off: float
-    energy: float
-
-    @staticmethod
-    def of(made: Profile, law: Law, low: float, high: float) -> Comparison:
-        """That with the energy of a law between two angles [rad]."""
-        run = made.run
-        angle = np.linspace(low, high, COMPARED)
-        torque = law.pull(angle)
-        if run.folds:
-            return Comparison(made, low, high, float(np.abs(torque).max()), inf, inf)
-        off = np.interp(angle, run.angle, run.torque) - torque
-        energy = np.interp(angle, run.angle, run.energy) - law.energy(angle)
-        return Comparison(made, low, high, float(np.abs(torque).max()), float(np.abs(off).max()), float(np.ptp(energy)))
-
-    @property
-    def share(self) -> float:
-        """What the torque differs by, as a share of its peak."""
-        return self.off / self.peak if self.peak else inf
-
-    @property
-    def used(self) -> Run:
-        """What the profile gives between the angles."""
-        run, margin = self.made.run, 1e-9
-        own = (run.angle >= self.low - margin) & (run.angle <= self.high + margin)
-        own = own if own.any() else np.ones(len(own), bool)
-        rows = {name: getattr(run, name)[own] for name in run.__dataclass_fields__ if name != "folds"}
-        return Run(**rows, folds=run.folds)
-
-    @property
-    def faults(self) -> tuple[str, ...]:
-        """What is wrong with the profile, its cable or roller and its spring, in words."""
-        run, law = self.used, self.made.spring.law
-        if run.folds:
-            return ("what runs on the profile leaves it: along its points the joint's angle goes back",)
-        found = []
-        if self.share > CLOSE:
-            found.append(f"its torque differs by up to {self.off:.3g} N m, {100 * self.share:.2g} % of its peak")
-        if not (run.force > 0).all():
-            found.append("its spring goes slack")
-        for state in law.states:
-            past = float(run.length.max() if state.above else run.length.min())
-            if state.limit and state.holds(np.array(past)):
-                found.append(f"its spring is {state.name}, at {1e3 * past:.4g} mm")
-        if self.made.cable and not (run.radius > 0).all():
-            found.append("the profile is not convex: its cable bridges what is hollow")
-        if not (run.free > 0).all():
-            found.append("its cable ends before its fixed point" if self.made.cable else "its roller passes the axis")
-        return tuple(found)
-
-    def to_dict(self) -> dict[str, Any]:
-        """For ``check --json``."""
-        run = self.used
-        return {
-            "torque_difference": self.off if isfinite(self.off) else None,
-            "share": self.share if isfinite(self.share) else None,
-            "energy_difference": self.energy if isfinite(self.energy) else None,
-            "spring_length": [float(run.length.min()), float(run.length.max())],
-            "spring_force": [float(run.force.min()), float(run.force.max())],
-            "least_radius": float(np.abs(run.radius).min()),
-            "reach": [float(run.reach.min()), float(run.reach.max())],
-            "faults": list(self.faults),
-        }
-
-    def __str__(self) -> str:
-        run, spring = self.used, self.made.spring
-        part = f" '{spring.part}'" if spring.part else ""
-        spring = f"{spring.law.noun}{part} {_to(1e3 * run.length)} mm, {_to(run.force)} N"
-        how = "a cable to" if self.made.cable else "a roller under"
-        size = f"{_to(1e3 * run.reach)} mm from the axis"
-        return f"profile: {size}, {how} {spring}; its torque is that of the energy within " + (
-            f"{100 * self.share:.2g} % of the peak" if isfinite(self.share) else "no bound"
-        )
-
-
-def _to(values: Array) -> str:
-    return f"{values.min():.4g} to {values.max():.4g}"
-
-
-@frozen
-class _Curve:
-    """The smooth curve through points: places, directions, curvature (more than 0 turns left) and length from the
-    first one, (n, 2), (n, 2), (n,) and (n,)."""
-
-    at: Array
-    along: Array
-    curvature: Array
-    length: Array
-
-    @staticmethod
-    def through(points: Points) -> _Curve:
-        from scipy.interpolate import CubicSpline
-
-        knots = np.array(points, float)
-        t = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(knots, axis=0).T))])
-        spline = CubicSpline(t, knots)
-        fine = np.concatenate([np.linspace(a, b, FINE, endpoint=False) for a, b in pairwise(t)])
-        fine = np.append(fine, t[-1])
-        first, second = spline(fine, 1), spline(fine, 2)
-        speed = np.hypot(*first.T)
-        middle = np.hypot(*spline((fine[1:] + fine[:-1]) / 2, 1).T)
-        steps = np.diff(fine) * (speed[1:] + 4 * middle + speed[:-1]) / 6  # Simpson
-        curvature = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / speed**3
-        return _Curve(spline(fine), first / speed[:, None], curvature, np.concatenate([[0.0], np.cumsum(steps)]))
 
 
 def _near(angle: Array) -> Array:
