@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from .io import load, save
     from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
     from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+    from .proof.certificate import Certified, certify, verify
     from .synthesis import Design, Load, Problem, Region, design, solve
 
 __all__ = [
     "Balance",
     "Body",
+    "Certified",
     "Coupling",
     "Design",
     "Guide",
@@ -43,12 +45,14 @@ __all__ = [
     "TorsionSpring",
     "Workspace",
     "__version__",
+    "certify",
     "check",
     "design",
     "laws",
     "load",
     "save",
     "solve",
+    "verify",
 ]
 
 _PLACES = {
@@ -56,6 +60,7 @@ _PLACES = {
     "io": ("load", "save"),
     "model.elements": ("Guide", "JointElement", "LineElement", "Pulley", "Spring", "TorsionSpring", "laws"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
+    "proof.certificate": ("Certified", "certify", "verify"),
     "synthesis": ("Design", "Load", "Problem", "Region", "design", "solve"),
 }
 _MODULE = {name: module for module, names in _PLACES.items() for name in names}

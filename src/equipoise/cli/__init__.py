@@ -16,6 +16,7 @@ from typing import NoReturn
 from ..model.errors import EquipoiseError, shortened
 from . import (
     adjust,
+    certify,
     check,
     clearance,
     demo,
@@ -35,6 +36,7 @@ from .app import app
 __all__ = [
     "adjust",
     "app",
+    "certify",
     "check",
     "clearance",
     "demo",

@@ -1,0 +1,1 @@
+"""Certificates of balance that another program can check."""

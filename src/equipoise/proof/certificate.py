@@ -1,0 +1,206 @@
+"""`certify`: what is claimed of a mechanism, and what proves it; `verify` asks the program that stands alone."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .._version import __version__
+from ..energy.fourier.frames import denominators
+from ..energy.span.nodes import reach
+from ..io import Source, loaded
+from ..io.files import read_text, write_text
+from ..kinematics import Tree
+from ..kinematics.sampling import whole_turns
+from ..model.errors import EquipoiseError, NoFourierForm
+from ..model.mechanism import Mechanism
+from ..model.units import Amount, quantity
+from ..synthesis.convex.spring_block import SpringBlock
+from ..synthesis.fewest import Fewest, fewest
+from ..synthesis.problem import Problem
+from ..synthesis.region import SHAPES, Region
+from . import verify as alone
+from .dual import lower_bound
+from .enclosure import Enclosure
+from .statement import rounded, text, written
+
+FORMAT = "equipoise certificate 1"
+STIFFNESS = 1e6  # [N/m] all springs of a bound together
+FLOOR = Fraction(1, 10**40)  # a torque that is exactly 0 is claimed to be at most so much
+
+
+class Refused(EquipoiseError):
+    """A certificate that does not prove what it claims."""
+
+    exit_code = 1
+
+
+@dataclass(frozen=True)
+class Certified:
+    """A certificate.
+
+    Attributes:
+        document: what is written; see docs/certificates.md.
+        left_out: claim -> why it is not made.
+    """
+
+    document: Mapping[str, Any]
+    left_out: Mapping[str, str]
+
+    @property
+    def claims(self) -> Mapping[str, Any]:
+        """Name -> what is claimed."""
+        return self.document["claims"]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write it.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        write_text(path, json.dumps(self.document, indent=1, ensure_ascii=False) + "\n")
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"mechanism": self.document["of"], "claims": dict(self.claims), "left_out": dict(self.left_out)}
+
+
+def certify(mechanism: Source, *, stiffness: Amount = STIFFNESS, problem: Problem | None = None) -> Certified:
+    """Prove what can be proved of a mechanism with its springs, so that another program can check it.
+
+    Args:
+        stiffness: [N/m] of all springs together, up to which the bound holds.
+        problem: what the bound is about; by default what the mechanism's provenance says that it was designed for.
+
+    Raises:
+        NoFourierForm: its energy has no finite form.
+        InputError: python-flint is not installed.
+    """
+    mechanism = loaded(mechanism)
+    data = written(mechanism)
+    enclosure = Enclosure(data)
+    claims, proof, left_out = {"torque": _torque(mechanism, enclosure)}, {}, {}
+    try:
+        limit = quantity(stiffness, "stiffness", "stiffness")
+        claims["bound"], proof["bound"] = _bound(problem or _designed_for(mechanism), enclosure, limit)
+    except EquipoiseError as why:
+        left_out["bound"] = str(why)
+    found = fewest(mechanism)
+    if found is None:
+        left_out["fewest"] = "no planar section that gravity loads was found"
+    else:
+        claims["fewest"] = _fewest(mechanism, found)
+    document = {
+        "format": FORMAT,
+        "of": mechanism.name,
+        "program": f"equipoise {__version__}",
+        "claims": claims,
+        "mechanism": data,
+        "proof": proof,
+    }
+    return Certified(document, left_out)
+
+
+def verify(certificate: Certified | Mapping[str, Any] | str | os.PathLike[str]) -> tuple[str, ...]:
+    """The names of the claims of a certificate, or of a file with one: all of them are proved.
+
+    Raises:
+        Refused: one is not, or it is no certificate; the message says why.
+        InputError: the file cannot be read.
+    """
+    if isinstance(certificate, Certified):
+        certificate = certificate.document
+    try:
+        if not isinstance(certificate, Mapping):
+            certificate = json.loads(read_text(certificate))
+        return alone.check(certificate)
+    except EquipoiseError:
+        raise
+    except Exception as why:
+        raise Refused(str(why) if type(why) is ValueError else f"it cannot be read: {why!r}") from None
+
+
+def _torque(mechanism: Mechanism, enclosure: Enclosure) -> dict[str, Any]:
+    sizes = dict(zip(enclosure.names, reach(Tree.of(mechanism)).tolist(), strict=True))
+    within = {name: Fraction(sizes[name]) for name in enclosure.powers}
+    most = [rounded(x + FLOOR, up=True) for x in enclosure.torque(within)]
+    return {
+        "at_most": dict(zip(enclosure.names, most, strict=True)),
+        "within": {name: text(x) for name, x in within.items()},
+    }
+
+
+def _bound(problem: Problem, enclosure: Enclosure, stiffness: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    tree = Tree.of(problem.judged)
+    if not whole_turns(tree, denominators(tree)):
+        raise NoFourierForm("its joints do not turn through whole turns: the mean over their ranges is not enclosed")
+    scale = problem.scale
+    blocks = [block for block in problem.blocks if isinstance(block, SpringBlock)]
+    found = lower_bound(enclosure, blocks, scale, stiffness)
+    if found is None:
+        raise NoFourierForm("springs on these pairs may leave nothing, as far as is known")
+    claim = {
+        "at_least": rounded(found.least - FLOOR, up=False),
+        "pairs": [[block.body_a, block.body_b] for block in blocks],
+        "regions": {
+            body: {"shape": one.shape, "centre": [*map(text, one.centre)], "half": [*map(text, one.half)]}
+            for body, one in problem.attachments.items()
+        },
+        "counted": {name: text(x) for name, x in zip(enclosure.names, scale.tolist(), strict=True) if x},
+        "stiffness": text(stiffness),
+    }
+    return claim, found.proof
+
+
+def _designed_for(mechanism: Mechanism) -> Problem:
+    """The problem whose answer the mechanism is, as its provenance says.
+
+    Raises:
+        NoFourierForm: it does not say, or the bound of such a problem is not certified.
+    """
+    options = mechanism.provenance.get("options", {})
+    if mechanism.provenance.get("method") != "convex" or "pairs" not in options:
+        raise NoFourierForm("the file does not say for which pairs and regions it was designed")
+    for name in ("keep", "loads"):
+        if options.get(name):
+            raise NoFourierForm(f"it was designed with '{name}', whose bound is not certified")
+    if any(one["shape"] not in SHAPES for one in options["regions"].values()):
+        raise NoFourierForm("it was designed with regions whose bound is not certified")
+    regions = {
+        body: Region(tuple(map(float, one["centre"])), tuple(map(float, one["half"])), one["shape"])  # type: ignore[arg-type]
+        for body, one in options["regions"].items()
+    }
+    return Problem.of(
+        mechanism.with_springs(()),
+        pairs=[tuple(pair) for pair in options["pairs"]],
+        regions=regions,
+        joints=options.get("joints"),
+        weights=options.get("weights"),
+        unlimited=options.get("unlimited", False),
+    )
+
+
+def _fewest(mechanism: Mechanism, found: Fewest) -> dict[str, Any]:
+    bare = mechanism.with_springs(())
+    tree = Tree.of(bare)
+    held = {str(name): value for name, value in found.held}
+    q = np.array([[held.get(str(name), 0.0) for name in tree.coordinates]])
+    axes = tree.axes(q, tree.poses(q))[0]
+    joints = [joint for joint in mechanism.joints if joint.name in found.joints]
+    turning = [joint for joint in joints if joint.type == "revolute"]
+    if turning:
+        axis = axes[tree.rows[turning[0].name]]
+    else:
+        axis = np.array([0.8, 0.6]) @ np.linalg.svd(np.array([mechanism.gravity]))[2][1:]
+    return {
+        "springs": found.springs,
+        "links": [joint.child for joint in joints],
+        "held": {name: text(value) for name, value in held.items()},
+        "axis": [*map(text, axis.tolist())],
+    }
