@@ -91,7 +91,7 @@ def test_check_bad_tolerance(run, pendulum, tolerance):
 def test_check_text_has_units_and_the_verdict(run, pendulum):
     code, out, _ = run("check", pendulum())
     assert code == 0
-    for text in ("EXACT: balanced at every configuration", "196.2 N/m", "5.8860", "N m", " J", "mm"):
+    for text in ("EXACT: balanced in every pose", "equipoise hardware", "196.2 N/m", "5.8860", "N m", " J", "mm"):
         assert text in out
 
 

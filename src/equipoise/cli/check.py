@@ -13,6 +13,7 @@ from .app import File, Json, app
 
 @app.command()
 def check(
+    context: typer.Context,
     file: File,
     tolerance: Annotated[
         str, typer.Option(help="good when the peak residual is below this share of the unbalanced peak, or 'X N m'")
@@ -56,11 +57,18 @@ def check(
         terminal.print_json(balance.to_dict() | ({} if swept is None else {"payload": swept.to_dict()}))
     else:
         from ..report.text import balance_lines
+        from ..report.verdict import next_step
 
-        answer = "" if balance.exact else f"{'within' if good else 'not within'} the tolerance of {tolerance}"
+        answer = (
+            ""
+            if balance.exact or not (mechanism.springs or terminal.typed(context, "tolerance"))
+            else f"{'within' if good else 'not within'} the tolerance of {tolerance}"
+        )
         terminal.show(balance_lines(balance, answer))
         if swept is not None:
             from ..report.robust import sweep_table
 
             terminal.show(iter(["at the payload with the largest residual; the whole range:", sweep_table(swept)]))
+        if follows := next_step(balance, file):
+            terminal.show(iter([follows]))
     raise typer.Exit(0 if good and not balance.passed else 1)

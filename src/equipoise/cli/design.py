@@ -7,20 +7,26 @@ from typing import Annotated, Any
 
 import typer
 
-from ..model.errors import InputError
+from ..model.errors import InputError, nearest
 from ..model.units import share
 from . import terminal
 from .app import File, Json, app
 
 
 @app.command()
-def methods(file: File, json: Json = False) -> None:
+def methods(
+    file: File,
+    method: Annotated[str | None, typer.Option(help="only this one, with its parameters")] = None,
+    json: Json = False,
+) -> None:
     """Which methods apply, and why the others do not.
 
-    Example: [bold]equipoise methods ur5.urdf[/bold]
+    Example: [bold]equipoise methods ur5.urdf --method planar[/bold]
     """
     from ..synthesis import METHODS
 
+    if method is not None and method not in METHODS:
+        raise InputError(f"--method: there is no {nearest(method, METHODS)}")
     mechanism = terminal.load(file)
     if json:
         rows = [
@@ -33,12 +39,15 @@ def methods(file: File, json: Json = False) -> None:
                 "parameters": {name: parameter.help for name, parameter in m.parameters.items()},
             }
             for m in METHODS.values()
+            if method in (None, m.name)
         ]
         terminal.print_json(rows)
     else:
-        from ..report.text import methods_table
+        from ..report.text import method_lines, methods_table
 
-        terminal.show(iter([methods_table(mechanism)]))
+        terminal.show(method_lines(mechanism, METHODS[method]) if method else iter([methods_table(mechanism)]))
+        if method is None:
+            terminal.say("the parameters of one: equipoise methods FILE --method NAME")
 
 
 @app.command()

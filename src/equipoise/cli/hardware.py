@@ -126,7 +126,7 @@ def stock(
         terminal.print_json(found.to_dict() | {"balance": after.to_dict()})
     else:
         from ..report.bill import choice_lines
-        from ..report.text import verdict
+        from ..report.verdict import verdict
 
         terminal.show(choice_lines(found, before, after))
         terminal.show(iter([verdict(after)]))

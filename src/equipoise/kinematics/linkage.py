@@ -1,6 +1,6 @@
 """Kinematics of mechanisms with loops: `Tree`'s interface, with the independent coordinates in the place of q.
 
-The dependent coordinates of the spanning tree are solved for (THEORY section 6): q = f(u), and velocities are
+The dependent coordinates of the spanning tree are solved for (docs/theory.md, section 3): q = f(u), and velocities are
 multiplied by dq/du. Poses that do not close are NaN in everything, so that no torque is ever given for them.
 """
 

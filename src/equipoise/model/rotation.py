@@ -57,7 +57,7 @@ def frame_of(axis: ArrayLike) -> Array:
 def harmonics(axis: ArrayLike) -> tuple[Array, Complexes]:
     """(A0, A1) with ``R(q) = A0 + A1 exp(iq) + conj(A1) exp(-iq)`` for the rotation about a unit `axis` (3,).
 
-    This is what makes the energy a finite Fourier series (THEORY section 2).
+    This is what makes the energy a finite Fourier series (docs/theory.md, section 2).
     """
     a = np.asarray(axis, float)
     A0 = np.outer(a, a)

@@ -9,7 +9,7 @@ from rich.text import Text
 from ..clearance import Clearance
 from ..kinematics import Tree
 from ..model.mechanism import Mechanism
-from .text import pose
+from .numbers import pose
 
 LISTED = 8  # distances
 

@@ -8,11 +8,12 @@ from zlib import crc32
 from ..balance import Balance
 from ..model.notebook import register
 from ..synthesis import Design
+from .numbers import percent
 from .page import design as sections
 from .page.html import block
 from .page.pictures import scheme
 from .schematic import schematic
-from .text import percent, verdict
+from .verdict import verdict
 
 
 def balance_html(value: Balance) -> str:

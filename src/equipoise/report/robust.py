@@ -25,6 +25,18 @@ def tolerance_lines(found: Tolerance) -> Iterator[RenderableType]:
         f"{s.shape} scatter, {what}: stiffness {100 * s.stiffness:.3g} %, attachments {1e3 * s.attachment:.3g} mm, "
         f"masses {100 * s.mass:.3g} %, lengths {1e3 * s.length:.3g} mm"
     )
+    if found.friction:
+        late = [
+            f"{name} needs {number(float(most))} and has {number(found.friction[name])} {name.load_unit}"
+            for name, most in zip(found.coordinates, found.nominal, strict=True)
+            if name in found.friction and most > found.friction[name]
+        ]
+        answer = (
+            "AS DRAWN: friction holds every pose"
+            if not late
+            else f"AS DRAWN: friction is too little: {'; '.join(late)}"
+        )
+        yield Text(answer, style="bold" if not late else "bold yellow")
     if found.yield_ is not None:
         style = "bold green" if found.yield_ >= 0.95 else "bold yellow"
         yield Text(f"YIELD: {100 * found.yield_:.4g} % of builds hold every pose within friction", style=style)

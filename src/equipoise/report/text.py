@@ -13,14 +13,15 @@ from rich.text import Text
 from ..balance import Balance
 from ..energy.exactness import EXACT
 from ..energy.spring_use import Reached
-from ..model.arrays import Array
-from ..model.coordinate import Coordinate
 from ..model.mechanism import Mechanism
 from ..model.units import SI_UNITS
+from .numbers import energies, percent, pose, torque
+from .verdict import basis, verdict
 
 if TYPE_CHECKING:  # a verdict waits for no method
     from ..synthesis import Design, Parameter
     from ..synthesis.convex.ordinary import Ordinary
+    from ..synthesis.method import Method
 
 
 def console(stderr: bool = False) -> Console:
@@ -32,12 +33,16 @@ def console(stderr: bool = False) -> Console:
 def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableType]:
     """The verdict, the torques per coordinate, the energies, the worst pose and the springs."""
     m = balance.mechanism
-    yield Text(f"{m.name}: {_count(balance.coordinates, 'coordinate')}, {_count(m.springs, 'spring')}", style="bold")
+    free = len(balance.coordinates)
+    freedom = f"{free} degree{'' if free == 1 else 's'} of freedom"
+    yield Text(f"{m.name}: {freedom}, {_count(m.springs, 'spring') if m.springs else 'no springs'}", style="bold")
     if (mobility := balance.mobility) is not None:
-        yield Text(
-            f"mobility {mobility.numerical} by the rank of the loop equations, {mobility.gruebler} by counting them: "
-            f"{_count(range(mobility.redundant), 'equation')} follow from the others"
-        )
+        ways = f"its loops leave {_count(range(mobility.numerical), 'way')} to move"
+        if mobility.redundant:
+            counted = f"; Gruebler's count gives {mobility.gruebler}"
+            counted = f"; Gruebler's count gives {mobility.gruebler}"
+            ways += f"{counted}: {mobility.redundant} of their equations repeat what the others say"
+        yield Text(ways)
     if (singular := balance.singular) is not None:
         what = (
             "relations between its joints lead through"
@@ -50,49 +55,30 @@ def balance_lines(balance: Balance, tolerance: str = "") -> Iterator[RenderableT
     yield verdict(balance)
     if tolerance:
         yield Text(tolerance)
+    if m.springs:
+        yield Text(basis(balance), style="dim")
     yield torque_table(balance)
-    low, high = balance.total
-    yield Text(
-        f"energy: gravity {_range(balance.gravity)}, springs {_range(balance.springs)}, "
-        f"total {_range((low, high))}, mean {balance.constant:.6g} J"
-    )
+    parts = f", springs {energies(balance.springs)}, total {energies(balance.total)}" if m.springs else ""
+    yield Text(f"energy: gravity {energies(balance.gravity)}{parts}, mean {balance.constant:.6g} J")
     if not balance.exact and len(balance.coordinates):
         yield Text(f"worst pose: {pose(balance.coordinates, balance.worst_configuration)}")
     yield from spring_lines(balance)
 
 
-def verdict(balance: Balance) -> Text:
-    """One line: exact or how far from it, and what that rests on."""
-    certificate = balance.certificate
-    if certificate.distance is None:
-        basis = f"judged on {certificate.samples:,} random poses, not proved: {certificate.reason}"
-    else:
-        size = f"its energy varies by {certificate.distance.relative:.2g} of what there is to balance"
-        if certificate.terms is not None:
-            largest = f"the largest that varies is {certificate.max_coefficient:.2g} J"
-            size = f"{certificate.terms:,} Fourier terms, {largest}"
-        if balance.exact:
-            return Text(f"EXACT: balanced at every configuration, proved ({size})", style="bold green")
-        basis = f"over {certificate.samples:,} random poses and a search for the worst; its energy varies ({size})"
-    if not len(balance.coordinates):
-        return Text("nothing moves: no coordinate to balance", style="yellow")
-    if np.isinf(balance.relative):
-        return Text(f"NOT BALANCED: the springs load joints that gravity does not; {basis}", style="bold yellow")
-    share = f"peak residual torque {percent(balance.relative)} of the unbalanced peak"
-    return Text(f"NOT EXACT: {share}; {basis}", style="bold yellow")
-
-
 def torque_table(balance: Balance) -> Table:
-    """Unbalanced and residual torque of every coordinate."""
+    """What every coordinate holds without springs and with them."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("joint", no_wrap=True)
-    for title in ("unbalanced max", "rms", "residual max", "rms", "proved bound", "unit"):
+    cases = [("without springs", balance.unbalanced)]
+    if balance.mechanism.springs:
+        cases.append(("with springs", balance.residual))
+    titles = [title for case, _ in cases for title in (f"{case}: most", "rms")]
+    for title in (*titles, "proved at most", "unit"):
         table.add_column(title, justify="right", no_wrap=True)
     floor = EXACT * float(balance.unbalanced.max.max(initial=0))  # less than this counts as nothing
     for j, coordinate in enumerate(balance.coordinates):
-        loads = (balance.unbalanced.max, balance.unbalanced.rms, balance.residual.max, balance.residual.rms)
+        cells = [torque(load[j], floor) for _, loads in cases for load in (loads.max, loads.rms)]
         bound = "-" if balance.bound is None else torque(balance.bound[j], floor)
-        cells = [torque(load[j], floor) for load in loads]
         table.add_row(Text(coordinate), *cells, bound, coordinate.load_unit)
     return table
 
@@ -208,19 +194,35 @@ def front_table(design: Design) -> Table:
 
 
 def methods_table(mechanism: Mechanism) -> Table:
-    """Which methods apply to a mechanism, and why the others do not."""
+    """Which methods apply to a mechanism, and why the others do not: one line each."""
     from ..synthesis import METHODS
 
     table = Table(box=None, pad_edge=False, header_style="dim")
-    for title in ("method", "applies", "what it does", "--set"):
-        table.add_column(title)
+    for title in ("method", "applies"):
+        table.add_column(title, no_wrap=True)
+    table.add_column("what it does, or why not")
     for method in METHODS.values():
         reasons = method.applies(mechanism)
-        answer = "yes" if not reasons else f"no: {'; '.join(reasons)}"
-        parameters = "\n".join(_parameter(name, p) for name, p in method.parameters.items())
-        cells = (method.name, answer, f"{method.summary}\n({method.source})", parameters)
-        table.add_row(*(Text(cell) for cell in cells))
+        answer = Text("no", style="dim") if reasons else Text("yes", style="green")
+        table.add_row(Text(method.name), answer, Text("; ".join(reasons) or method.summary))
     return table
+
+
+def method_lines(mechanism: Mechanism, method: Method) -> Iterator[RenderableType]:
+    """One method: whether it applies, where it is from, and its parameters."""
+    reasons = method.applies(mechanism)
+    yield Text(f"{method.name}: {method.summary}", style="bold")
+    yield Text(f"  applies: {'no, ' + '; '.join(reasons) if reasons else 'yes'}")
+    yield Text(f"  source: {method.source}")
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("--set", no_wrap=True)
+    table.add_column("what it is")
+    for name, parameter in method.parameters.items():
+        unit = SI_UNITS.get(parameter.kind, "")
+        choices = f"; {', '.join(parameter.choices)}" if parameter.choices else ""
+        label = f"{name}{'.BODY' if parameter.each else ''}{f' [{unit}]' if unit else ''}"
+        table.add_row(Text(label), Text(f"{parameter.help}{choices}"))
+    yield table
 
 
 def free_value(value: object, parameter: Parameter | None) -> str:
@@ -233,34 +235,5 @@ def free_value(value: object, parameter: Parameter | None) -> str:
     return f"{value:.6g} {unit}".rstrip() if isinstance(value, float) else str(value)
 
 
-def _parameter(name: str, parameter: Parameter) -> str:
-    unit = SI_UNITS.get(parameter.kind, "")
-    text = f"{name}{'[.BODY]' if parameter.each else ''}{f' [{unit}]' if unit else ''}: {parameter.help}"
-    return f"{text}; {', '.join(parameter.choices)}" if parameter.choices else text
-
-
 def _count(items: Sequence[object], noun: str) -> str:
     return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
-
-
-def torque(value: float, floor: float = 0.0) -> str:
-    """A torque or force; less than `floor` counts as nothing."""
-    if value == 0:
-        return "0"
-    if value < floor:
-        return f"< {floor:.0e}"
-    return f"{value:.4f}" if value >= 1e-3 else f"{value:.1e}"
-
-
-def percent(share: float) -> str:
-    """A share; less than the certificate's tolerance counts as nothing."""
-    return "0 %" if share == 0 else f"< {100 * EXACT:.0e} %" if share < EXACT else f"{100 * share:.3g} %"
-
-
-def _range(pair: tuple[float, float]) -> str:
-    return f"{pair[0]:.6g} to {pair[1]:.6g} J"
-
-
-def pose(coordinates: Sequence[Coordinate], values: Array) -> str:
-    """Every coordinate with its value, on one line."""
-    return ", ".join(coordinate.show(value) for coordinate, value in zip(coordinates, values.tolist(), strict=True))

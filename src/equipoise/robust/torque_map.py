@@ -2,7 +2,7 @@
 
 Orientations do not depend on lengths, so every point is an affine function of what scatters, with matrices that only
 the pose decides. The torque is then linear in products of the build's own numbers: k c c' of each spring, m c of each
-mass (THEORY section 1). The poses are compressed once; a build costs one small matrix product.
+mass (docs/theory.md, section 1). The poses are compressed once; a build costs one small matrix product.
 """
 
 from __future__ import annotations

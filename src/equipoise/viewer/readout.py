@@ -7,7 +7,7 @@ from html import escape
 import numpy as np
 
 from ..report import style, svg
-from ..report.text import verdict
+from ..report.verdict import verdict
 from .model import Model
 
 BARS_SHOWN = 12  # coordinates with bars

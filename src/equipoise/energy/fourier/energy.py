@@ -1,4 +1,4 @@
-"""The energy as a finite Fourier series: the balance certificate (THEORY section 2).
+"""The energy as a finite Fourier series: the balance certificate (docs/theory.md, section 2).
 
 Gravity and zero-free-length springs give
 

@@ -45,7 +45,10 @@ class Frames:
         self._like = self._orientations()
 
     def stretch(self, body_a: int, body_b: int) -> dict[int, Series]:
-        """Z of THEORY section 1 as ``{X: V_X}``, V_X 3 x 7: the stretch is ``sum_X R_WX V_X z``, z = [p_a; 1; p_b]."""
+        """Z as ``{X: V_X}``, V_X 3 x 7: the stretch is ``sum_X R_WX V_X z``, z = [p_a; 1; p_b].
+
+        See docs/theory.md, section 1.
+        """
         to_a = np.hstack([np.eye(3), np.zeros((3, 4))])
         to_b = np.hstack([np.zeros((3, 4)), np.eye(3)])
         unit = np.eye(7)[None, 3]

@@ -52,7 +52,7 @@ class Spring(AlongLine):
         return Linear(self.stiffness, self.free_length)
 
     def series(self, frames: Frames) -> Series:
-        """The energy [J] of a zero-free-length spring (THEORY section 1); coefficients (T, 1, 1).
+        """The energy [J] of a zero-free-length spring (docs/theory.md, section 1); coefficients (T, 1, 1).
 
         Raises:
             NoFourierForm: it has a free length.

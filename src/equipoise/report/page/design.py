@@ -16,8 +16,9 @@ from ...io.yaml import to_text
 from ...model.coordinate import Coordinate
 from ...model.masses import lumped_masses
 from ...synthesis.fewest import fewest
+from ..numbers import percent, torque
 from ..schematic import symbols
-from ..text import percent, reached, torque
+from ..text import reached
 from . import pictures
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 

@@ -15,7 +15,7 @@ from ...model.errors import Fault, InputError, nearest
 from ...model.progress import Progress, silent
 from ...model.units import Amount
 from .. import style
-from ..text import verdict
+from ..verdict import verdict
 from . import design
 from . import hardware as built
 from .content import Report

@@ -73,7 +73,7 @@ def design(mechanism: Mechanism, options: ConvexOptions) -> Design:
 
 @takes(SolverOptions)
 def solve(problem: Problem, options: SolverOptions) -> Design:
-    """Choose springs, few of them, and bound what any could do (THEORY section 4).
+    """Choose springs, few of them, and bound what any could do (docs/theory.md, section 4).
 
     Raises:
         InfeasibleError: `exact`, and no springs on the pairs do it, or none were found; or no springs help at all.
@@ -246,7 +246,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
 METHOD = Method(
     "convex",
     "zero-free-length springs between any bodies: exact where feasible, beside a global bound",
-    "THEORY section 4: semidefinite program over moment matrices, then local polish",
+    "docs/theory.md, section 4: semidefinite program over moment matrices, then local polish",
     applies,
     design,
     ConvexOptions,

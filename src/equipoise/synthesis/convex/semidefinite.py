@@ -1,4 +1,4 @@
-"""The least torque that any choice of parts can leave: a convex program (THEORY sections 1 and 4).
+"""The least torque that any choice of parts can leave: a convex program (docs/theory.md, sections 1 and 4).
 
 Unknowns are those of the blocks, each in its cone. Any set of parts, however many, is a feasible point, so the optimum
 is a lower bound for every design on these blocks.

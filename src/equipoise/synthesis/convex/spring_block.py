@@ -255,7 +255,7 @@ def at_ends(z: Array) -> Array:
 
 
 def stretch(poses: Poses, velocities: Velocities, A: int, B: int) -> tuple[Array, Array]:
-    """Z (N, 3, 7) of THEORY section 1 and its derivative (N, n, 3, 7)."""
+    """Z (N, 3, 7) of docs/theory.md, section 1 and its derivative (N, n, 3, 7)."""
     Z = np.concatenate([-poses.R[:, A], (poses.p[:, B] - poses.p[:, A])[:, :, None], poses.R[:, B]], axis=2)
 
     def turned(body: int) -> Array:

@@ -2,7 +2,8 @@
 
 With the directions r = (x_1, r_2, .., r_n) as complex numbers the energy is ``1/2 r^H K r``. Each 2 x 2 block of the
 paper is a rotation times a factor, so one complex number: 1 stands for I, i for I'. A spring has ``K = k w w^H``
-(THEORY section 3); the arm is balanced when the blocks off the diagonal vanish in the sum with gravity's, Eq. (23).
+(docs/theory.md, section 5); the arm is balanced when the blocks off the diagonal vanish in the sum with gravity's,
+Eq. (23).
 """
 
 from __future__ import annotations
