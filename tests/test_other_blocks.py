@@ -1,4 +1,4 @@
-"""The protocol of blocks is open: a counterweight and a spring between fixed points, defined here, go all the way."""
+"""The protocol of blocks is open: counterweights, and a spring between fixed points defined here, go all the way."""
 
 from __future__ import annotations
 
@@ -20,71 +20,13 @@ from equipoise.kinematics import Poses, Tree, Velocities, sample
 from equipoise.model.arrays import Array
 from equipoise.model.errors import NoFourierForm
 from equipoise.synthesis.convex.blocks import Block, Cone
+from equipoise.synthesis.convex.counterweight_block import CounterweightBlock
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.peak import peak_poses
 from equipoise.synthesis.convex.semidefinite import least_rms
-from equipoise.synthesis.region import free_directions, project
 
 ARM = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
 HINGE = planar_arm([2.0], [0.5], [0.3])
-BALL = np.array(False)
-
-
-@dataclass(frozen=True)
-class Counterweight(Block):
-    """A mass on a body, within `radius` [m] of its origin: the unknowns are m and m p / radius [kg]."""
-
-    body: str
-    radius: float
-    unknowns: ClassVar[int] = 4  # type: ignore[assignment]
-    shape: ClassVar[int] = 3  # type: ignore[assignment]
-    weighs: ClassVar[bool] = True
-
-    @property
-    def place(self) -> tuple[str, ...]:
-        return (self.body,)
-
-    def series(self, frames: Frames) -> Series:
-        g, body = -np.array(frames.tree.mechanism.gravity), frames.tree.index[self.body]
-        at = [frames.linear(g, frames.moment([(body, 1.0, p)])) for p in self._ends()]
-        return Series.sum([Series(s.keys, s.coef[:, :, 0] * row) for s, row in zip(at, self._rows(), strict=True)])
-
-    def _ends(self) -> Array:
-        return self.radius * np.vstack([np.zeros(3), np.eye(3)])
-
-    @staticmethod
-    def _rows() -> Array:
-        """What the energies of unit masses at `_ends` are in those of the unknowns: the first, and differences."""
-        return np.vstack([[1.0, -1, -1, -1], np.eye(4)[1:]])
-
-    def sampled(self, tree: Tree, q: Array, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
-        g, body = -np.array(tree.mechanism.gravity), tree.index[self.body]
-        energy = np.stack([poses.point(body, p) @ g for p in self._ends()], axis=-1) @ self._rows()
-        rates = [np.einsum("i,nij->nj", g, velocities.point(poses, body, p)) for p in self._ends()]
-        return np.stack(rates, axis=-1) @ self._rows(), energy.sum(axis=0)
-
-    def cones(self) -> Iterable[Cone]:
-        yield Cone("second order", np.eye(4))
-
-    def part(self, u: Array) -> Array:
-        return np.hstack([np.ones((len(u), 1)), u])
-
-    def slopes(self, u: Array) -> Array:
-        return np.tile(np.eye(4)[1:], (len(u), 1, 1))
-
-    def project(self, u: Array) -> Array:
-        return project(u, BALL)
-
-    def free(self, u: Array, gradient: Array) -> Array:
-        return free_directions(u, gradient, BALL)
-
-    def cost(self, energy: Array) -> Array:
-        return np.array([9.81 * self.radius, 0, 0, 0])  # a counterweight's energy says nothing; its mass does
-
-    def add(self, mechanism: eq.Mechanism, k: float, u: Array) -> eq.Mechanism:
-        x, y, z = (self.radius * u).tolist()
-        weight = eq.PointMass(f"counterweight {len(mechanism.masses)}", self.body, k, (x, y, z))
-        return mechanism.with_masses((*mechanism.masses, weight))
 
 
 @dataclass(frozen=True)
@@ -129,7 +71,7 @@ class FixedSpring(Block):
 
 
 def test_a_counterweight_balances_a_hinge_exactly():
-    problem = eq.Problem(HINGE, (), beside=(Counterweight("link2", 0.2),))
+    problem = eq.Problem(HINGE, (), beside=(CounterweightBlock("link2", 0.2),))
     design = eq.solve(problem, springs=1)
     (weight,) = design.mechanism.masses
     assert design.balance.exact
@@ -140,7 +82,7 @@ def test_a_counterweight_balances_a_hinge_exactly():
 
 def test_a_spring_and_a_counterweight_do_what_neither_does_alone():
     springs = eq.Problem.of(ARM, pairs=[("world", "link2")], radius=0.1)
-    weight = Counterweight("link3", 0.2)
+    weight = CounterweightBlock("link3", 0.2)
     both = replace(springs, beside=(weight,))
     for alone in (springs, replace(both, pairs=())):
         assert least_rms(build(alone)).value > 0.1
@@ -151,7 +93,7 @@ def test_a_spring_and_a_counterweight_do_what_neither_does_alone():
 
 
 def test_weights_hold_in_every_direction_of_gravity_and_springs_do_not():
-    weights = (Counterweight("link2", 0.3), Counterweight("link3", 0.3))
+    weights = (CounterweightBlock("link2", 0.3), CounterweightBlock("link3", 0.3))
     problem = eq.Problem(ARM, (), beside=weights, loads=tuple(TILTED))
     design = eq.solve(problem, springs=2, exact=True)
     assert max(row.residual for row in design.loads) < 1e-10 * design.unbalanced
@@ -162,7 +104,7 @@ def test_weights_hold_in_every_direction_of_gravity_and_springs_do_not():
 
 @pytest.mark.parametrize("samples", [None, 400])
 def test_what_a_block_with_weight_leaves_under_each_load(samples):
-    problem = eq.Problem(ARM, (), beside=(Counterweight("link2", 0.3),), loads=tuple(TILTED), samples=samples)
+    problem = eq.Problem(ARM, (), beside=(CounterweightBlock("link2", 0.3),), loads=tuple(TILTED), samples=samples)
     design = eq.solve(problem, springs=1)
     turn = 2 * np.pi * np.arange(8) / 8
     whole = np.stack(np.meshgrid(turn, turn), axis=-1).reshape(-1, 2)
@@ -211,7 +153,7 @@ def test_the_peak_too():
 def test_bounds_with_mixed_blocks_hold_for_random_designs():
     problem = eq.Problem.of(ARM, span=1, radius=0.1, samples=200)
     problem = replace(
-        problem, beside=(Counterweight("link3", 0.2), FixedSpring((0, 0, 0.5), "link2", (0.1, 0, 0), 0.3))
+        problem, beside=(CounterweightBlock("link3", 0.2), FixedSpring((0, 0, 0.5), "link2", (0.1, 0, 0), 0.3))
     )
     reduced, rng = build(problem), np.random.default_rng(0)
     bound, q = least_rms(reduced).value * reduced.unbalanced, sample(Tree.of(ARM), 200)

@@ -76,7 +76,7 @@ def design(
         ),
     ] = None,
     box: Annotated[bool, typer.Option("--box", help="regions are boxes of +-radius, not balls")] = False,
-    springs: Annotated[int | None, typer.Option(min=1, help="at most this many (default: as few as do)")] = None,
+    springs: Annotated[int | None, typer.Option(min=0, help="at most this many (default: as few as do)")] = None,
     objective: Annotated[str, typer.Option(help="rms or peak torque")] = "rms",
     joints: Annotated[str | None, typer.Option(metavar="A,B,...", help="the joints that count (default: all)")] = None,
     front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
@@ -87,6 +87,14 @@ def design(
     keep: Annotated[
         bool, typer.Option("--keep", help="the file's own springs stay (default: they are replaced)")
     ] = False,
+    counterweights: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH|BODY=LENGTH,...", help="weights too, within this of the links' origins"),
+    ] = None,
+    residual: Annotated[
+        str | None,
+        typer.Option(help="with --counterweights: what may be left of the unbalanced rms torque (default 0%)"),
+    ] = None,
     free_length: Annotated[
         list[str] | None,
         typer.Option(metavar="[SPRING=]LENGTH", help="make the best of springs with a free length; may be repeated"),
@@ -114,7 +122,7 @@ def design(
     from ..io import check_savable, save
     from ..report.figure import check_drawable, save_figure
     from ..synthesis import METHODS, by_name
-    from . import options
+    from . import options, weights
     from .regions import regions, sizes
 
     given: dict[str, Any] = {
@@ -132,6 +140,8 @@ def design(
         "front": front,
         "keep": keep,
         "seed": seed,
+        "counterweights": None if counterweights is None else weights.counterweights(counterweights),
+        "residual": None if residual is None else share(residual, "--residual"),
     }
     # a method knows its own defaults, and is told only what was asked for
     asked = {"regions": "region", "shape": "box"}

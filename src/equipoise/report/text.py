@@ -17,6 +17,7 @@ from ..model.mechanism import Mechanism
 from ..model.units import SI_UNITS
 from .numbers import energies, percent, pose, torque
 from .verdict import basis, verdict
+from .weights import weight_lines
 
 if TYPE_CHECKING:  # a verdict waits for no method
     from ..synthesis import Design, Parameter
@@ -133,6 +134,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         gap = f"gap {percent(design.certified_gap)} of unbalanced"
         why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
         yield Text(f"  bound       {least}: {why}; {gap}")
+    if design.counterweights is not None:
+        yield from weight_lines(design.counterweights, design.unbalanced)
     if design.by_chance:
         yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")
     if design.fewest is not None:

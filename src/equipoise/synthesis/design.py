@@ -14,6 +14,7 @@ from ..model.elements import Spring
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.units import Amount, quantity
+from .counterweights import Counterweights
 from .fewest import Fewest, fewest
 
 if TYPE_CHECKING:
@@ -97,6 +98,7 @@ class Design(Shown):
         front: the best design for each number of springs, when it was asked for.
         by_chance: whether its springs come from random starts, the last resort where the program gives none as good.
         ordinary: what was lost when the springs got a free length, or room.
+        counterweights: what was designed beside the springs.
         judged: the verdict on `mechanism`, where making the design took one; of any other it says nothing.
     """
 
@@ -116,6 +118,7 @@ class Design(Shown):
     front: tuple[FrontRow, ...] = ()
     by_chance: bool = False
     ordinary: Ordinary | None = None
+    counterweights: Counterweights | None = None
     judged: Balance | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
@@ -242,5 +245,6 @@ class Design(Shown):
             "fewest": None if self.fewest is None else self.fewest.to_dict(),
             "free_parameters": dict(self.free_parameters),
             "free_length": None if self.ordinary is None else self.ordinary.to_dict(),
+            **({} if self.counterweights is None else {"counterweights": self.counterweights.to_dict()}),
             "balance": self.balance.to_dict(),
         }  # fmt: skip

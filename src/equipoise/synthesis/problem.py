@@ -23,6 +23,7 @@ from ..model.region import SHAPES, Shape
 from ..model.units import Amount
 from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.blocks import Block
+from .convex.counterweight_block import CounterweightBlock
 from .convex.spring_block import SpringBlock
 from .given import number
 from .load import OWN, Load
@@ -56,6 +57,7 @@ class ProblemOptions(Options):
         seed: of those poses.
         unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
         keep: the mechanism's own springs stay and count as a load; else they are replaced.
+        counterweights: [m] weights too, on every link that moves within this of its origin, or body -> distance.
         loads: what has to be balanced, by default the mechanism as it is; of several the weighted mean of the mean
             squares counts, or the largest of all peaks.
     """
@@ -74,6 +76,9 @@ class ProblemOptions(Options):
     seed: int = option(0, "whole", "of the random poses (default 0)")
     unlimited: bool = False
     keep: bool = False
+    counterweights: Amount | Mapping[str, Amount] | None = option(
+        None, "length", "weights too, within this of each link's origin, or of one BODY's", each=True
+    )
     loads: Iterable[Load] = (OWN,)
 
 
@@ -125,6 +130,8 @@ class Problem:
         else:
             given["span"] = None
         given["regions"], given["weights"] = options.regions or {}, options.weights or {}
+        weights = given.pop("counterweights")
+        given["beside"] = () if weights is None else tuple(CounterweightBlock.each(mechanism, weights))
         return Problem(mechanism, **given)
 
     def __post_init__(self) -> None:

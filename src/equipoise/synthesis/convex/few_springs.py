@@ -65,6 +65,7 @@ class SpringSearch:
 
     Attributes:
         most: parts that are wanted, at most.
+        target: what is good enough, as a share of the goal's unit; by default what is exact, or near the bound.
         found: the best sets of each number of parts, once it was `explored`.
         seen: the blocks on which the program by itself was solved; tried: the prices at which it was on all.
     """
@@ -77,6 +78,7 @@ class SpringSearch:
     seen: set[tuple[int, ...]] = field(default_factory=set)
     tried: set[tuple[int, int]] = field(default_factory=set)
     explored: bool = False
+    target: float | None = None
 
     @cached_property
     def sets(self) -> BlockSets:
@@ -89,6 +91,12 @@ class SpringSearch:
             return self.goal.bound.value
         except EquipoiseError:
             return 0.0
+
+    def start(self, parts: Parts | None, target: float) -> None:
+        """Take a set that is known, and what is good enough, as a share of the goal's unit."""
+        self.target = target
+        if parts is not None:
+            self.offer(self.goal, parts)
 
     def best(self, most: int) -> SpringSet | None:
         """The best set with at most so many parts, of equal ones the one with the fewest; None where there is none."""
@@ -122,12 +130,14 @@ class SpringSearch:
                 if self._fewest(self.most):
                     break
             self._shrink()
-        if not (self.explored or self._fewest(self.most)):
+        if self.floor < FEASIBLE or not self._fewest(self.most):
             self.best(self.most)
         return self._best_of(self._fewest(self.most))
 
     def enough(self, found: SpringSet) -> bool:
         """Whether more parts are not worth it: it is exact, or near a bound that says that none are."""
+        if self.target is not None:
+            return found.exact or found.value <= self.target
         return found.exact or (self.floor >= FEASIBLE and found.value <= self.floor + NEAR)
 
     def _explore(self) -> None:
@@ -162,7 +172,7 @@ class SpringSearch:
         except EquipoiseError:  # at another price it may not stop
             return
         if parts is not None and parts.k.shape[1] <= LARGEST:
-            self._offer(goal, parts)
+            self.offer(goal, parts)
 
     def _on_fewer(self, count: int) -> bool:
         """The program on sets of few blocks that may be enough; whether one was, with so many parts."""
@@ -183,7 +193,7 @@ class SpringSearch:
         for i, chosen in enumerate(sets):
             if isinstance(self.goal, Rms) and self.sets.bound(chosen) > self._least(count):
                 break  # no set of parts on these blocks, nor on any later ones, can be better
-            self._offer(self.goal, random_parts(self.goal.reduced, chosen, count, self.seed), by_chance=True)
+            self.offer(self.goal, random_parts(self.goal.reduced, chosen, count, self.seed), by_chance=True)
             self.progress("choosing springs from random starts", (i + 1) / len(sets))
             if self._fewest(count):
                 break
@@ -191,7 +201,7 @@ class SpringSearch:
     def _least(self, most: int) -> float:
         return min((one.value for count, sets in self.found.items() if count <= most for one in sets), default=np.inf)
 
-    def _offer(self, goal: Goal, start: Parts, by_chance: bool = False) -> None:
+    def offer(self, goal: Goal, start: Parts, by_chance: bool = False) -> None:
         """Take what starts, all of one size, are polished to."""
         parts, values = goal.improve(start)
         exact = rms(goal.reduced, parts) < ROUNDING_SHARE
@@ -216,5 +226,5 @@ class SpringSearch:
             if sets:
                 less = Parts.joined([one.parts.without(i) for one in sets for i in range(count)])
                 around = [less.scattered(self.goal.reduced, SCATTER, rng) for _ in range(AROUND if count <= FEW else 0)]
-                self._offer(self.goal, Parts.joined([less, *around]))
+                self.offer(self.goal, Parts.joined([less, *around]))
             self.progress("taking springs away", 1 / count)

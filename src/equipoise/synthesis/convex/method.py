@@ -10,13 +10,13 @@ from warnings import warn
 import numpy as np
 
 from ...balance import check
-from ...kinematics import Tree
-from ...model.errors import EquipoiseError, EquipoiseWarning, InfeasibleError, InputError
+from ...model.errors import EquipoiseError, EquipoiseWarning, Fault, InfeasibleError, InputError
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
 from ...model.progress import silent
+from ...model.units import Amount, number
 from ...model.validate import whole_number
-from ..design import Design, FrontRow, Infeasible
+from ..design import Design, FrontRow
 from ..load import OWN
 from ..method import Method
 from ..mounts import Mounts
@@ -24,18 +24,17 @@ from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
 from .block_sets import FEASIBLE
 from .candidates import front_row, load_residuals, with_parts
+from .counterweight_block import CounterweightBlock
 from .few_springs import ROUNDING_SHARE, SpringSearch, SpringSet
-from .goal import Goal, Rms
+from .goal import Goal, Rms, rms
+from .infeasible import infeasible_on
 from .least_squares_form import LeastSquaresForm, build
+from .lightest import CLOSE, Lightest, lightest, weighs
 from .peak import Peak
-from .semidefinite import least_rms, rms_program
+from .polish import Parts
 
 ROUNDING = 1e-13
 SPRINGS_TRIED = 8  # springs tried when no number is given
-FAR = 10.0  # times as large: regions that tell whether the pairs or the regions are to blame
-REMEDIES = 24  # other pairs tried when exact balance is infeasible
-SINGLY = 5  # of them that are tried one by one, where they help all together
-FEW = 300  # poses that tell whether exact balance is possible
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +46,8 @@ class SolverOptions(MethodOptions):
             1 % of the unbalanced torque of the bound.
         exact: insist on exact balance.
         front: also list the best design for every number of springs up to `springs` (8 by default).
+        residual: the lightest counterweights that leave this share of the unbalanced rms torque, 0 for exact balance;
+            by default weights may have any mass and springs and weights leave as little as they can.
         seed: of the random starts.
     """
 
@@ -55,6 +56,9 @@ class SolverOptions(MethodOptions):
     )
     exact: bool = False
     front: bool = False
+    residual: Amount | None = option(
+        None, "share", "with counterweights, what may be left of the unbalanced rms torque (default 0%)"
+    )
     seed: int = option(0, "whole", "of the random starts (default 0)")
 
 
@@ -67,7 +71,9 @@ class ConvexOptions(SolverOptions, ProblemOptions):
 
 @takes(ConvexOptions)
 def design(mechanism: Mechanism, options: ConvexOptions) -> Design:
-    """Choose springs between bodies of a mechanism: `solve` of `Problem.of`; see those."""
+    """Choose springs between bodies of a mechanism, and the lightest counterweights: `solve` of `Problem.of`."""
+    if options.counterweights is not None and options.residual is None:
+        options = replace(options, residual=0.0)
     return solve(Problem.of(mechanism, **options.of(ProblemOptions)), **options.of(SolverOptions))
 
 
@@ -75,25 +81,83 @@ def design(mechanism: Mechanism, options: ConvexOptions) -> Design:
 def solve(problem: Problem, options: SolverOptions) -> Design:
     """Choose springs, few of them, and bound what any could do (docs/theory.md, section 4).
 
+    With a `residual` the lightest counterweights are chosen first, and then springs for them; `front` is theirs.
+
     Raises:
-        InfeasibleError: `exact`, and no springs on the pairs do it, or none were found; or no springs help at all.
+        InfeasibleError: `exact`, and no springs on the pairs do it, or none were found; or no springs help at all; or
+            no counterweights leave as little as is asked.
         InputError: a bad option, loops that cannot be closed, or nothing to balance.
     """
     if options.springs is not None:
-        whole_number("springs", options.springs, 1)
+        whole_number("springs", options.springs, 1 if options.residual is None else 0)
     whole_number("seed", options.seed, 0)
+    if options.residual is None:
+        return _springs(problem, options)
+    if not weighs(problem):
+        raise InputError(Fault(("residual",), "is what counterweights may leave: give counterweights too"))
+    return _weighted(problem, options, number("residual", options.residual, positive=False))
+
+
+def _weighted(problem: Problem, options: SolverOptions, share: float) -> Design:
+    """The lightest counterweights, and springs for them."""
+    if share and problem.objective != "rms":
+        raise InputError(Fault(("residual",), "is a share of the rms torque: it goes with the objective rms"))
+    if options.springs == 0:
+        problem = problem.with_pairs(())
+    reduced = _worth_solving(build(problem, options.progress))
+    found = lightest(reduced, share, options.front, options.seed, options.progress or silent)
+    if found.alone is not None:
+        design = _weights_alone(reduced, found.alone)
+    else:
+        asked = replace(options, front=False, exact=options.exact or not share)
+        design = _springs(found.with_weights, asked, found)
+        if design.residual > share * reduced.unbalanced * (1 + CLOSE) and not design.balance.exact:
+            raise InfeasibleError(
+                f"with counterweights of {found.counterweights.mass:.4g} kg and at most {options.springs} springs the "
+                f"best that was found leaves {design.residual:.4g} N m rms: allow more springs"
+            )
+    weights, free = found.counterweights, _free(problem, options)
+    unbalanced = reduced.unbalanced if problem.objective == "rms" else Peak.of(reduced).unit
+    made = replace(design, unbalanced=unbalanced, free_parameters=free, counterweights=weights)
+    return made.with_provenance()
+
+
+def _weights_alone(reduced: LeastSquaresForm, parts: Parts) -> Design:
+    """The design that takes no springs."""
+    goal = Peak.of(reduced) if reduced.problem.objective == "peak" else Rms(reduced)
+    loads = load_residuals(goal, parts)
+    left = max(load.residual for load in loads) if isinstance(goal, Peak) else rms(reduced, parts)[0] * goal.unit
+    averaged = reduced.averaged and isinstance(goal, Rms)
+    return Design(
+        mechanism=with_parts(reduced, parts),
+        method="convex",
+        objective=reduced.problem.objective,
+        joints=reduced.problem.joints,
+        residual=float(left),
+        unbalanced=goal.unit,
+        averaged=averaged,
+        samples=None if averaged else reduced.problem.count,
+        loads=loads,
+    )
+
+
+def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None = None) -> Design:
+    """Springs, on a mechanism that has its weights."""
     reduced = _worth_solving(build(problem, options.progress))
     goal = Peak.of(reduced) if problem.objective == "peak" else Rms(reduced)
     search = SpringSearch(goal, options.springs or SPRINGS_TRIED, options.seed, options.progress or silent)
+    if weights is not None:
+        search.start(weights.springs_on(reduced), weights.share * weights.reduced.unbalanced / goal.unit)
     bound = _bound(goal)
     least = bound if isinstance(goal, Rms) else _bound(Rms(reduced))  # exact or not: the mean square tells best
-    infeasible = None if least is None or least < FEASIBLE else _infeasible(reduced, least)
+    possible, asked_less = least is None or least < FEASIBLE, weights is not None and weights.share > 0
+    infeasible = None if least is None or possible or asked_less else infeasible_on(reduced, least)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
     found = _found(search, options.springs is None)
     averaged = reduced.averaged and problem.objective == "rms"
     if bound is not None:
-        bound = min(0.0 if infeasible is None else bound, found.value) * goal.unit
+        bound = min(0.0 if possible else bound, found.value) * goal.unit
     design = Design(
         mechanism=with_parts(reduced, found.parts),
         method="convex",
@@ -105,7 +169,7 @@ def solve(problem: Problem, options: SolverOptions) -> Design:
         averaged=averaged,
         samples=None if averaged else problem.count,
         free_parameters=_free(problem, options),
-        exact_feasible=None if least is None else infeasible is None,
+        exact_feasible=None if least is None else possible,
         infeasible=infeasible,
         loads=load_residuals(goal, found.parts),
         front=tuple(_rows(search)) if options.front else (),
@@ -177,50 +241,6 @@ def _rows(search: SpringSearch) -> Iterator[FrontRow]:
         yield front_row(search.goal, count, found, bound)
 
 
-def _infeasible(reduced: LeastSquaresForm, bound: float) -> Infeasible:
-    problem = reduced.problem
-    own = tuple(dict.fromkeys(block.place for block in reduced.blocks))
-    present = {frozenset(pair) for pair in own}
-    mounts = Mounts.of(problem.judged)
-    # a large mechanism has hundreds of other pairs: the nearest ones are tried
-    missing = [p for p in mounts.pairs(len(mounts.bodies)) if frozenset(p) not in present]
-    missing = sorted(missing, key=mounts.apart)[:REMEDIES]
-    wider = problem.with_pairs([*(pair for pair in problem.pairs if pair in own), *missing])
-    # exact balance within joint ranges, or at a few hundred random poses, is exact balance everywhere
-    whole = reduced.averaged and Tree.of(problem.judged).turns.all()
-    wider = wider.with_poses(unlimited=True) if whole else replace(wider, samples=FEW)
-    wide = build(wider)
-    numbers = {place: [i for i, b in enumerate(wide.blocks) if b.place == place] for place in (*own, *missing)}
-    unit = reduced.unbalanced
-    try:
-        far = least_rms(reduced.enlarged(FAR)).value
-    except EquipoiseError:
-        far = 0.0  # not known
-    remedies = _remedies(wide, [i for place in own for i in numbers[place]], [numbers[pair] for pair in missing])
-    places = tuple(wide.blocks[i].place for i, *_ in remedies)
-    return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing))
-
-
-def _feasible(reduced: LeastSquaresForm) -> bool:
-    """Whether exact balance is possible as far as the solver can tell."""
-    try:
-        return rms_program(reduced).reaches(FEASIBLE)
-    except EquipoiseError:
-        return False
-
-
-def _remedies(wide: LeastSquaresForm, stay: list[int], others: list[list[int]]) -> list[list[int]]:
-    """Those of the others, each the blocks of a pair, any of which makes exact balance possible.
-
-    None where all together do not.
-    """
-    if not others or not _feasible(wide.on([*stay, *(i for blocks in others for i in blocks)])):
-        return []
-    size = len(others) // 2 if len(others) > SINGLY else 1
-    groups = [others[i : i + size] for i in range(0, len(others), size)] if len(others) > 1 else []
-    return [one for group in groups for one in _remedies(wide, stay, group)] if groups else others
-
-
 def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
     """What a design says of the problem and the options that it comes from, as plain data."""
     return {
@@ -230,6 +250,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
             name: own[0].to_dict() if len(own) == 1 else [region.to_dict() for region in own]
             for name, own in problem.attachments.items()
         },
+        **_weighed(problem, options),
         "springs": options.springs,
         "objective": problem.objective,
         "joints": None if problem.joints is None else list(problem.joints),
@@ -241,6 +262,11 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
         "seed": options.seed,
         **({"seed of poses": problem.seed} if problem.seed != options.seed else {}),
     }
+
+
+def _weighed(problem: Problem, options: SolverOptions) -> dict[str, Any]:
+    radii = {block.body: block.radius for block in problem.beside if isinstance(block, CounterweightBlock)}
+    return {"counterweights": radii, "residual": options.residual} if radii else {}
 
 
 METHOD = Method(
