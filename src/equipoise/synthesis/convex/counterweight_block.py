@@ -19,9 +19,10 @@ from ...model.arrays import Array
 from ...model.errors import Fault, InputError, nearest
 from ...model.mechanism import Mechanism, PointMass
 from ...model.names import Names
+from ...model.region import EXTREME, Region
 from ...model.units import Amount, quantity
 from ..mounts import Mounts
-from ..region import EXTREME, Region, free_directions, project
+from ..region import free_directions, project
 from .blocks import Block, Cone
 
 SIZE = 4  # a mass and three moments
