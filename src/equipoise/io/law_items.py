@@ -26,7 +26,6 @@ class LawItem(Item):
 
     law: ClassVar[type[Law]]
     own_noun: ClassVar[bool] = True
-    kind: str = Linear.kind
 
     def made(self, folder: FilePath, path: dict[str, str]) -> Law:
         """Its law; the file of a table is relative to the folder of the mechanism file.
@@ -47,6 +46,7 @@ class OnJointsItem(LawItem):
     """A law on joints: they are named in either of two ways."""
 
     name: Text
+    kind: str
     joint: Text | None = None
     joints: dict[str, Number] = Field(default={}, validate_default=True)
 
