@@ -172,7 +172,7 @@ def test_joint_types() -> None:
     assert m.joints == (
         Joint("f", "fixed", "world", "a", (1.0, 2.0, 3.0), (0.1, -0.2, 0.3)),
         Joint("r", "revolute", "a", "b", axis=(0.0, 0.0, 2.0), range=(-1.0, 2.0)),
-        Joint("c", "revolute", "b", "c", axis=(1.0, 0.0, 0.0)),
+        Joint("c", "revolute", "b", "c", axis=(1.0, 0.0, 0.0), effort=1.0),
         Joint("p", "prismatic", "c", "d", axis=(1.0, 0.0, 0.0), range=(0.0, 2.0)),
     )
     assert m.couplings == (Coupling("c", (("r", -2.0),), 0.5),)

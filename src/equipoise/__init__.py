@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .balance import Balance, check
     from .io import load, save
     from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
+    from .model.goal import Count, Goal, Gravity, Loads, Tool
     from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
     from .proof.certificate import Certified, certify, verify
     from .synthesis import Design, Load, Problem, Region, design, solve
@@ -28,13 +29,17 @@ __all__ = [
     "Balance",
     "Body",
     "Certified",
+    "Count",
     "Coupling",
     "Design",
+    "Goal",
+    "Gravity",
     "Guide",
     "Joint",
     "JointElement",
     "LineElement",
     "Load",
+    "Loads",
     "Loop",
     "Mechanism",
     "PointMass",
@@ -42,6 +47,7 @@ __all__ = [
     "Pulley",
     "Region",
     "Spring",
+    "Tool",
     "TorsionSpring",
     "Workspace",
     "__version__",
@@ -59,6 +65,7 @@ _PLACES = {
     "balance": ("Balance", "check"),
     "io": ("load", "save"),
     "model.elements": ("Guide", "JointElement", "LineElement", "Pulley", "Spring", "TorsionSpring", "laws"),
+    "model.goal": ("Count", "Goal", "Gravity", "Loads", "Tool"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
     "proof.certificate": ("Certified", "certify", "verify"),
     "synthesis": ("Design", "Load", "Problem", "Region", "design", "solve"),

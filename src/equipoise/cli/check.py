@@ -42,7 +42,7 @@ def check(
         raise InputError("--tolerance: a torque says nothing about the sliding joints here; give a share such as 1%")
     if payload is not None and payload_on is None:
         raise InputError("--payload: needs --payload-on, the body that carries it")
-    swept = None
+    swept = goal = None
     with terminal.progress_bar("judging") as report:
         report("judging the balance", 0.0)
         balance = judge(mechanism, samples=samples, seed=seed)
@@ -52,9 +52,18 @@ def check(
             report("sweeping payloads", 0.0)
             swept = sweep(mechanism, options.payload(mechanism, payload, payload_on, payload_at), steps=steps)
             balance = swept.worst
+        if mechanism.goal:
+            from ..synthesis.score import score
+
+            report("judging by the goal", 0.0)
+            goal = score(mechanism)
     good = balance.balanced(share or 0.0, torque)
     if json:
-        terminal.print_json(balance.to_dict() | ({} if swept is None else {"payload": swept.to_dict()}))
+        terminal.print_json(
+            balance.to_dict()
+            | ({} if swept is None else {"payload": swept.to_dict()})
+            | ({} if goal is None else {"goal": goal.to_dict()})
+        )
     else:
         from ..report.text import balance_lines
         from ..report.verdict import next_step
@@ -65,6 +74,8 @@ def check(
             else f"{'within' if good else 'not within'} the tolerance of {tolerance}"
         )
         terminal.show(balance_lines(balance, answer))
+        if goal is not None:
+            terminal.show(iter([f"goal: {goal}"]))
         if swept is not None:
             from ..report.robust import sweep_table
 

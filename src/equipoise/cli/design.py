@@ -9,7 +9,7 @@ import typer
 
 from ..model.errors import InputError, nearest
 from ..model.units import share
-from . import terminal
+from . import goals, terminal
 from .app import File, Json, app
 
 
@@ -79,6 +79,12 @@ def design(
     springs: Annotated[int | None, typer.Option(min=0, help="at most this many (default: as few as do)")] = None,
     objective: Annotated[str, typer.Option(help="rms or peak torque")] = "rms",
     joints: Annotated[str | None, typer.Option(metavar="A,B,...", help="the joints that count (default: all)")] = None,
+    payload: goals.Payload = None,
+    payload_on: goals.On = None,
+    payload_at: goals.At = "0,0,0",
+    tilt: goals.Tilt = None,
+    share_of: goals.ShareOf = None,
+    joint_weight: goals.Weights = None,
     front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
     exact: Annotated[bool, typer.Option("--exact", help="insist on exact balance; exit code 1 if infeasible")] = False,
     unlimited: Annotated[
@@ -159,6 +165,9 @@ def design(
     if room is None and thick is not None:
         raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
+    goal = goals.asked(mechanism, payload, payload_on, payload_at, tilt, share_of, joint_weight or [])
+    if goal is not None:
+        given["goal"] = goal
     sizes(mechanism, given.get("radius"), given.get("regions", {}))
     if output:
         check_savable(output)  # before the work, not after it

@@ -50,6 +50,8 @@ def to_text(mechanism: Mechanism) -> str:
         document["assembly"] = {name: float(value) for name, value in mechanism.assembly}
     if mechanism.workspace != defaults["workspace"]:
         document["workspace"] = _item(mechanism.workspace)
+    if mechanism.goal:
+        document["goal"] = mechanism.goal.to_dict()
     if mechanism.provenance:
         document["provenance"] = _checked(mechanism.provenance, ("provenance",))
     lines: list[str] = []

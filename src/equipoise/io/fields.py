@@ -138,13 +138,20 @@ def limits(value: object, info: ValidationInfo) -> tuple[float, float] | None:
     return found[0], found[1]
 
 
-def held(value: object, info: ValidationInfo) -> float:
-    """Damping or friction of a joint: of its turning or of its sliding."""
-    joint_type = info.data.get("type")
-    if joint_type is None:
-        return 0.0
+HELD = {
+    "damping": ("rotational damping", "damping"),
+    "friction": ("torque", "force"),
+    "effort": ("torque", "force"),
+    "torque_constant": ("torque per current", "force per current"),
+}
+"""What a field of a joint measures: of its turning, and of its sliding."""
+
+
+def held(value: object, info: ValidationInfo) -> float | None:
+    """Damping, friction or what a motor can do at a joint: of its turning or of its sliding."""
+    joint_type, name = info.data.get("type"), str(info.field_name)
+    if joint_type is None or value is None:
+        return None
     if joint_type not in MOVING:
-        raise InputError(f"a {joint_type} joint has no {info.field_name}; only {', '.join(MOVING)} joints have")
-    if info.field_name == "friction":
-        return to_si(value, "force" if joint_type == "prismatic" else "torque")
-    return to_si(value, "damping" if joint_type == "prismatic" else "rotational damping")
+        raise InputError(f"a {joint_type} joint has no {name}; only {', '.join(MOVING)} joints have")
+    return to_si(value, HELD[name][joint_type == "prismatic"])

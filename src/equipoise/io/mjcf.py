@@ -1,11 +1,9 @@
-"""Write a mechanism as a MuJoCo model (MJCF). Nothing is imported from MuJoCo.
-
-Choices, where the two differ:
+"""Write a mechanism as a MuJoCo model (MJCF). Nothing is imported from MuJoCo. Choices, where the two differ:
 
 - A spherical joint is a ball: its quaternion is ``Rx(q.x) Ry(q.y) Rz(q.z)``.
 - A parallelogram's child is a body of the parent. Its rotation relative to the parent undoes the joints from the common
-  ancestor to the parent and repeats those to `follows`: one hinge each, all through the child's origin, with the axis
-  turned round where it undoes, so that every replica has the angle of its original, to which an equality ties it.
+  ancestor to the parent and repeats those to `follows`: one hinge each through the child's origin, with the axis turned
+  round where it undoes, so that every replica has the angle of its original; an equality ties them.
 - A coupling with one term is an equality between two joints; with another number, a fixed tendon held at the offset.
 - A loop is a connect between two sites; a hinge loop has a second one, 0.1 m along the axes.
 - A locked joint (equal limits), which MuJoCo has not, is held by an equality.
@@ -14,7 +12,7 @@ Choices, where the two differ:
 - Equalities are MuJoCo's soft constraints: the initial pose must satisfy them (see `joint_map`), drift is not zero. A
   pose that does is the keyframe "assembled", where one is given. Which coordinates steer the loops is a custom text.
 - Springs are tendons, and some actuators: see `mjcf_springs`.
-- Links are drawn: by their capsules, or by thin ones from each body's origin to its joints. Nothing touches.
+- Links are drawn: by capsules, their own or thin ones to their joints. Nothing touches.
 """
 
 from __future__ import annotations
@@ -256,9 +254,11 @@ def _joint(body: ET.Element, joint: Joint) -> None:
     for key, value in (("damping", joint.damping), ("frictionloss", joint.friction)):
         if value:
             element.set(key, numbers([value]))
+    if joint.effort and joint.type != "spherical":
+        element.set("actuatorfrcrange", numbers([-joint.effort, joint.effort]))
     element.set("limited", str(limited).lower())
-    if joint.range is not None and limited:
-        element.set("range", numbers(joint.range))
+    if limited:
+        element.set("range", numbers(joint.range or ()))
 
 
 def _shapes(m: Mechanism) -> dict[str, list[Capsule]]:

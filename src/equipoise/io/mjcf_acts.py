@@ -82,6 +82,31 @@ class Model:
         limited = model.actuator_forcelimited[a]
         return (int(model.actuator_trnid[a, 0]), b0, b1) if plain and b1 >= 0 and not damping and not limited else None
 
+    def effort(self, j: int) -> float | None:
+        """What the actuators of a hinge or slide can do together, where all of them or the joint have a limit."""
+        model, mj, found = self.model, self.mj, 0.0
+        for a in np.flatnonzero(model.actuator_trnid[:, 0] == j) if model.nu else ():
+            at_joint = int(model.actuator_trntype[a]) in (
+                int(mj.mjtTrn.mjTRN_JOINT),
+                int(mj.mjtTrn.mjTRN_JOINTINPARENT),
+            )
+            if at_joint and not self.alone(int(a)):
+                found += abs(float(model.actuator_gear[a, 0])) * self._limit(int(a))
+        own = float(np.abs(model.jnt_actfrcrange[j]).max()) if model.jnt_actfrclimited[j] else np.inf
+        found = min(found or np.inf, own)
+        return found if 0 < found < np.inf else None
+
+    def _limit(self, a: int) -> float:
+        """[N m or N] the most force of an actuator, by its forcerange, or of a motor by its ctrlrange."""
+        model, mj = self.model, self.mj
+        if model.actuator_forcelimited[a]:
+            return float(np.abs(model.actuator_forcerange[a]).max())
+        plain = int(model.actuator_gaintype[a]) == int(mj.mjtGain.mjGAIN_FIXED)
+        motor = plain and int(model.actuator_biastype[a]) == int(mj.mjtBias.mjBIAS_NONE)
+        if motor and int(model.actuator_dyntype[a]) == int(mj.mjtDyn.mjDYN_NONE) and model.actuator_ctrllimited[a]:
+            return float(np.abs(model.actuator_gainprm[a, 0] * model.actuator_ctrlrange[a]).max())
+        return np.inf
+
     def say(self) -> None:
         """Name what acts and is not read, and the flags that are heeded."""
         model, notes = self.model, self.notes

@@ -205,7 +205,8 @@ class _Reader:
         limits = (float(model.jnt_range[j, 0]), float(model.jnt_range[j, 1])) if limited else None
         resists = float(model.dof_damping[dof]), float(model.dof_frictionloss[dof])
         made = Joint(name, "spherical" if kind == "floating" else kind, parent, child, vec3(shift), to_rpy(turn),
-                     range=limits, damping=resists[0], friction=resists[1])  # fmt: skip
+                     range=limits, damping=resists[0], friction=resists[1],
+                     effort=self.source.effort(j) if kind in SINGLE else None)  # fmt: skip
         if kind == "floating":
             bodies, joints = freed.chain(kind, made, self._names)
             self.bodies += bodies

@@ -30,10 +30,12 @@ from .fields import (
     Type,
     held,
     limits,
+    number_of,
     one_of,
     show,
     whole,
 )  # fmt: skip
+from .goal_items import GoalItem, model_at
 from .spring_items import of_kind, part_model
 
 SCHEMA = 1
@@ -66,6 +68,9 @@ class JointItem(Item):
     follows: Text | None = None
     damping: Any = 0.0
     friction: Any = 0.0
+    effort: Any = None
+    torque_constant: Any = None
+    resistance: Annotated[float, number_of("resistance")] | None = None
 
     @field_validator("axis")
     @classmethod
@@ -76,7 +81,7 @@ class JointItem(Item):
         return (1.0, 0.0, 0.0) if value is None else value
 
     _range = field_validator("range", mode="before")(limits)
-    _held = field_validator("damping", "friction", mode="before")(held)
+    _held = field_validator("damping", "friction", "effort", "torque_constant", mode="before")(held)
 
 
 class CouplingItem(Item):
@@ -155,6 +160,7 @@ class MechanismFile(Item):
     attachments: list[AttachmentItem] = Field(default_factory=list)
     capsules: list[CapsuleItem] = Field(default_factory=list)
     workspace: WorkspaceItem = WorkspaceItem()
+    goal: GoalItem = GoalItem()
     provenance: dict[str, Any] = Field(default_factory=dict)
 
 
@@ -224,6 +230,8 @@ def _model(path: Path, data: Any) -> type[Item]:
     if section == "springs" and inside:
         number, *keys = inside
         return part_model(data["springs"][number], keys[0] if keys else "")
+    if section == "goal":
+        return model_at(tuple(inside))
     return DhRow if path[:2] == ("dh", "rows") else _ITEMS[str(path[0])]
 
 

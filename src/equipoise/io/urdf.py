@@ -26,7 +26,7 @@ from ..model.validate import FARTHEST
 from . import files, freed
 from .lint import inertia_lint
 from .notes import Notes
-from .urdf_joints import chained, unrestricted
+from .urdf_joints import chained, effort, unrestricted
 from .urdf_known import CONVERTED, label, refuse_xacro, short, unread
 from .urdf_loops import loops
 from .urdf_springs import springs
@@ -207,7 +207,7 @@ class _Reader:
         if element is not None:
             axis = self._vector(element, (*path, "axis"), "xyz", axis)
         limits = self._limits(joint, path, kind) if kind in ("revolute", "prismatic") else None
-        found = Joint(name, TYPES[kind], ends[0], ends[1], xyz, rpy, axis, limits)
+        found = Joint(name, TYPES[kind], ends[0], ends[1], xyz, rpy, axis, limits, effort=effort(joint, kind))
         if (dynamics := joint.find("dynamics")) is None:
             return found
         damping, friction = (self._number(dynamics, (*path, "dynamics"), key, 0.0) for key in ("damping", "friction"))

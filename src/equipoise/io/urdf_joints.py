@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import isfinite
 
 from ..model.mechanism import WORLD, Body, Coupling, Joint
 from ..model.names import Names
@@ -29,6 +30,16 @@ def unrestricted(joints: Joints, couplings: list[tuple[Coupling, XmlElement]], n
             message = "a follower's own limits, which would restrict its leader, are ignored as ROS does"
             notes.note(label(element), message, (element.find("limit") or element).line)
     return [(replace(joint, range=found.get(joint.name, joint.range)), element) for joint, element in joints]
+
+
+def effort(element: XmlElement, kind: str) -> float | None:
+    """What the motor of a joint of this kind can do, by its <limit>: exporters write 0 where nobody knows."""
+    limit = element.find("limit")
+    try:
+        value = float(limit.attributes["effort"]) if limit is not None and kind not in freed.STEPS else 0.0
+    except (KeyError, ValueError):
+        return None
+    return value if value > 0 and isfinite(value) else None
 
 
 def chained(links: Links, joints: Joints) -> tuple[Links, Joints, list[tuple[str, XmlElement]]]:

@@ -133,7 +133,9 @@ def _joint(robot: ET.Element, joint: Joint) -> ET.Element:
         ET.SubElement(element, "axis", xyz=numbers(joint.axis))
     if kind in ("revolute", "prismatic"):
         lower, upper = (numbers([limit]) for limit in joint.range or (-TRAVEL, TRAVEL))
-        ET.SubElement(element, "limit", lower=lower, upper=upper, effort="0", velocity="0")
+        ET.SubElement(element, "limit", lower=lower, upper=upper, effort=numbers([joint.effort or 0.0]), velocity="0")
+    elif joint.effort:
+        ET.SubElement(element, "limit", effort=numbers([joint.effort]), velocity="0")
     if joint.damping or joint.friction:
         ET.SubElement(element, "dynamics", damping=numbers([joint.damping]), friction=numbers([joint.friction]))
     return element

@@ -10,6 +10,7 @@ from pathlib import Path as FilePath
 
 from ..model.elements import Element, Vec3
 from ..model.errors import Fault, InputError, Path, nearest
+from ..model.goal import Goal
 from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
 from ..model.units import quantity
 from . import dh, models
@@ -78,6 +79,7 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             attachments=tuple(item.attachment() for item in file.attachments),
             gravity=tree.gravity or file.gravity,
             workspace=Workspace(**file.workspace.values()),
+            goal=_goal(file),
             provenance=file.provenance,
             independent=tuple(file.independent),
             assembly=tuple(assembly.items()),
@@ -87,6 +89,13 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
     if faults:
         raise located.error(faults)
     return mechanism
+
+
+def _goal(file: MechanismFile) -> Goal:
+    try:
+        return file.goal.goal()
+    except InputError as error:
+        raise InputError([replace(fault, path=("goal", *fault.path)) for fault in error.faults]) from None
 
 
 def _springs(file: MechanismFile, located: Located) -> tuple[tuple[Element, ...], list[Fault]]:

@@ -14,6 +14,7 @@ from typing import Any, Literal, get_args
 from .coordinate import Coordinate, Slide
 from .elements import Element, Vec3
 from .errors import InputError
+from .goal import BY_DEFAULT, Goal
 from .immutable import immutable
 from .region import Attachment
 from .validate import faults
@@ -51,6 +52,8 @@ class Joint:
         range: (lower, upper) [rad or m] of a revolute or prismatic joint; None is unlimited.
         damping, friction: of a joint that moves, about each axis: torque per rate [N m s/rad or N s/m], and dry
             friction [N m or N]. They hold and slow; balance does not count on them.
+        effort: [N m or N] what its motor can do about each axis; None where it is not known.
+        torque_constant, resistance: of that motor, seen from the joint: torque per current [N m/A or N/A], and [ohm].
     """
 
     name: str
@@ -64,6 +67,9 @@ class Joint:
     follows: str | None = None
     damping: float = 0.0
     friction: float = 0.0
+    effort: float | None = None
+    torque_constant: float | None = None
+    resistance: float | None = None
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -133,6 +139,7 @@ class Mechanism:
         independent: of a mechanism with loops, the coordinates that determine the others; chosen by itself when empty.
         assembly: coordinate values [rad or m] near a pose in which the loops close.
         attachments: where springs may be attached when they are designed; of other bodies nothing is said.
+        goal: what it is designed for; by itself it changes nothing.
 
     Raises:
         InputError: with one `Fault` for every inconsistency (see `validate.faults`).
@@ -152,6 +159,7 @@ class Mechanism:
     assembly: tuple[tuple[str, float], ...] = ()
     capsules: tuple[Capsule, ...] = ()
     attachments: tuple[Attachment, ...] = ()
+    goal: Goal = field(default=BY_DEFAULT, hash=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", immutable(self.provenance))

@@ -13,9 +13,10 @@ import numpy as np
 
 from .arrays import Array, frozen
 from .errors import Fault, InputError, nearest
+from .goal import masses as mass_range
 from .mechanism import Mechanism, PointMass
 from .names import Names
-from .units import Amount, number, point, quantity
+from .units import Amount, point
 
 
 @frozen
@@ -39,7 +40,7 @@ class Payload:
         if body not in mechanism.body_names:
             problem = f"there is no body {nearest(body, mechanism.body_names)}"
             raise InputError(Fault(("payload_on",), problem, mechanism.body_names))
-        low, high = _range((masses,) if isinstance(masses, (str, float, int)) else masses)
+        low, high = mass_range(masses)
         return Payload(body, low, high, np.array(point(place, "payload_at", body)))
 
     @property
@@ -59,12 +60,3 @@ class Payload:
         x, y, z = self.place.tolist()
         name = Names(point.name for point in mechanism.masses).new("payload")
         return mechanism.with_masses((*mechanism.masses, PointMass(name, self.link, mass, (x, y, z))))
-
-
-def _range(masses: Sequence[Amount]) -> tuple[float, float]:
-    if len(masses) not in (1, 2):
-        raise InputError(Fault(("payload",), f"must be one mass, or the smallest and largest, found {[*masses]}"))
-    low, high = (number("payload", quantity(m, "mass", "payload"), positive=False) for m in (masses[0], masses[-1]))
-    if high < low:
-        raise InputError(Fault(("payload",), f"the smallest comes first, found {low:g} kg, {high:g} kg"))
-    return low, high

@@ -28,6 +28,9 @@ SI_UNITS = {
     "temperature": "K",
     "rotational damping": "N m s/rad",
     "damping": "N s/m",
+    "torque per current": "N m/A",
+    "force per current": "N/A",
+    "resistance": "ohm",
     "stress": "Pa",
     "number": "",
 }

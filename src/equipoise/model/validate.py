@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from unicodedata import category
 
 from .coordinate import Coordinate, Slide
-from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, nearest, shorten
+from .errors import COUNTED, Fault, InputError, Path, at_least, finite, known, nearest, positive, shorten
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -38,7 +38,7 @@ def faults(mechanism: Mechanism) -> list[Fault]:
     too_many = list(_sizes(mechanism))
     if too_many:
         return too_many
-    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch, _attachments)
+    checks = (_numbers, _names, _references, _joints, _tree, _couplings, _springs, _loops, _branch, _attachments, _goal)
     return list(islice((fault for check in checks for fault in check(mechanism)), COUNTED))
 
 
@@ -107,6 +107,10 @@ def _names(m: Mechanism) -> Iterator[Fault]:
             yield Fault(("joints", i, "name"), f"'{joint.name}' is also a coordinate of a spherical joint")
 
 
+def _goal(m: Mechanism) -> Iterator[Fault]:
+    yield from m.goal.faults(m)
+
+
 def printable(name: str) -> bool:
     """Whether a name has nothing that would reach terminals and pages: no control characters, line breaks or turns."""
     return not any(category(letter) in ("Cc", "Cs", "Zl", "Zp") or letter in TURNS for letter in name)
@@ -147,6 +151,16 @@ def _joints(m: Mechanism) -> Iterator[Fault]:
         for key, value, per in (("damping", joint.damping, f" s/{kind.unit}"), ("friction", joint.friction, "")):
             yield from at_least(("joints", i, key), value, 0, kind.load_unit + per)
             if value and joint.type in ("fixed", "parallelogram"):
+                yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
+        for key, unit in (
+            ("effort", kind.load_unit),
+            ("torque_constant", f"{kind.load_unit}/A"),
+            ("resistance", "ohm"),
+        ):
+            if (known_value := getattr(joint, key)) is None:
+                continue
+            yield from positive(("joints", i, key), known_value, unit)
+            if joint.type in ("fixed", "parallelogram"):
                 yield Fault(("joints", i, key), f"a {joint.type} joint has none: it has no coordinate of its own")
         if joint.type == "parallelogram" and joint.follows is None:
             yield Fault(("joints", i, "follows"), "missing: a parallelogram joint names the body it keeps parallel to")

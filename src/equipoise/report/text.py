@@ -119,18 +119,24 @@ def reached(one: Reached, unit: str) -> str:
 def design_lines(design: Design) -> Iterator[RenderableType]:
     """What was reached, how that compares with the best possible, the front if there is one, and the verdict."""
     from ..synthesis import METHODS
+    from ..synthesis.score import Terms
 
     method = METHODS[design.method]
     share = design.residual / design.unbalanced
     which = "all joints" if design.joints is None else ", ".join(design.joints)
+    terms = Terms.of(design.goal.count)
     yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
     ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
-    yield Text(f"  unbalanced  {design.unbalanced:.5g} N m  ({where})")
+    yield Text(f"  unbalanced  {terms.show(design.unbalanced)}  ({where})")
     floor = EXACT * design.unbalanced
-    yield Text(f"  residual    {torque(design.residual, floor)} N m  = {percent(share)} of unbalanced")
+
+    def left(value: float) -> str:
+        return f"{torque(value, floor)} N m" if terms.unit == "N m" else terms.show(value)
+
+    yield Text(f"  residual    {left(design.residual)}  = {percent(share)} of unbalanced")
     if design.bound is not None and design.certified_gap is not None:
-        least = f"{torque(design.bound, floor)} N m  = {percent(design.bound / design.unbalanced)}"
+        least = f"{left(design.bound)}  = {percent(design.bound / design.unbalanced)}"
         gap = f"gap {percent(design.certified_gap)} of unbalanced"
         why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
         yield Text(f"  bound       {least}: {why}; {gap}")
@@ -142,13 +148,15 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         yield Text(f"  fewest      {_count(range(design.fewest.springs), 'spring')} for exact balance; {design.fewest}")
     for load in design.loads if len(design.loads) > 1 else ():
         share = percent(load.residual / load.unbalanced) if load.unbalanced else "-"
-        yield Text(f"  {load.name:<11} {torque(load.residual, floor)} N m  = {share} of {load.unbalanced:.5g} N m")
+        yield Text(f"  {load.name:<11} {left(load.residual)}  = {share} of {terms.show(load.unbalanced)}")
     for name, value in design.free_parameters.items() if method.exact else ():
         yield Text(f"  {name:<11} {free_value(value, method.parameters.get(name))}")
     if design.ordinary is not None:
         yield from _ordinary_lines(design.ordinary)
     if design.infeasible is not None:
         yield Text(f"  {design.infeasible}", style="yellow")
+    if design.goal:
+        yield Text(f"  goal        {terms.sentence(design.residual, design.unbalanced, design.bound)}", style="bold")
     if design.front:
         yield front_table(design)
     yield from balance_lines(design.balance)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .._version import __version__
 from ..balance import Balance, check
 from ..model.elements import Spring
+from ..model.goal import BY_DEFAULT, Goal
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.units import Amount, quantity
@@ -97,6 +98,7 @@ class Design(Shown):
             as it is.
         front: the best design for each number of springs, when it was asked for.
         by_chance: whether its springs come from random starts, the last resort where the program gives none as good.
+        goal: what it was made for, where that is more than the objective; `residual` and its like are in its terms.
         ordinary: what was lost when the springs got a free length, or room.
         counterweights: what was designed beside the springs.
         judged: the verdict on `mechanism`, where making the design took one; of any other it says nothing.
@@ -117,6 +119,7 @@ class Design(Shown):
     loads: tuple[LoadResidual, ...] = ()
     front: tuple[FrontRow, ...] = ()
     by_chance: bool = False
+    goal: Goal = BY_DEFAULT
     ordinary: Ordinary | None = None
     counterweights: Counterweights | None = None
     judged: Balance | None = field(default=None, repr=False, compare=False)
@@ -182,8 +185,8 @@ class Design(Shown):
         given |= {name: getattr(asked, name) for name in options if name != "regions"}  # it has them
         return replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
-            joints=None, averaged=False, samples=samples, loads=(), free_parameters=given, ordinary=found,
-            judged=found.balance,
+            joints=None, averaged=False, samples=samples, loads=(), goal=BY_DEFAULT, free_parameters=given,
+            ordinary=found, judged=found.balance,
         ).with_provenance()  # fmt: skip
 
     def with_diameter(self, diameter: Amount) -> Design:
@@ -207,6 +210,8 @@ class Design(Shown):
             "bound": self.bound,
             "certified_gap": self.certified_gap,
         }
+        if self.goal:
+            provenance["goal"] = self.goal.to_dict()
         mechanism, known = replace(self.mechanism, provenance=provenance), self._known
         return replace(self, mechanism=mechanism, judged=known and replace(known, mechanism=mechanism))
 
@@ -242,6 +247,7 @@ class Design(Shown):
                 for row in self.front
             ],
             "by_chance": self.by_chance,
+            "goal": self.goal.to_dict() or None,
             "fewest": None if self.fewest is None else self.fewest.to_dict(),
             "free_parameters": dict(self.free_parameters),
             "free_length": None if self.ordinary is None else self.ordinary.to_dict(),

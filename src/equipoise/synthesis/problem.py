@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..kinematics import Tree
 from ..model.arrays import Array
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
+from ..model.goal import BY_DEFAULT, TORQUES, Goal, Torque
 from ..model.mechanism import Mechanism
 from ..model.region import SHAPES, Shape
 from ..model.units import Amount
@@ -26,7 +27,8 @@ from .convex.blocks import Block
 from .convex.counterweight_block import CounterweightBlock
 from .convex.spring_block import SpringBlock
 from .given import number
-from .load import OWN, Load
+from .goal import asked, motor_scale, stated
+from .load import OWN, Load, with_means
 from .mounts import Mounts
 from .options import Options, option, takes
 from .region import Given, Region, given_regions
@@ -34,8 +36,8 @@ from .region import Given, Region, given_regions
 __all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
 
 Pair = tuple[str, str]
-Objective = Literal["rms", "peak"]
-OBJECTIVES: tuple[Objective, ...] = ("rms", "peak")
+Objective = Torque
+OBJECTIVES = TORQUES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +62,8 @@ class ProblemOptions(Options):
         counterweights: [m] weights too, on every link that moves within this of its origin, or body -> distance.
         loads: what has to be balanced, by default the mechanism as it is; of several the weighted mean of the mean
             squares counts, or the largest of all peaks.
+        goal: what the design is for; by default the mechanism's own. The options above that are given count instead of
+            what it says.
     """
 
     span: int = option(2, "whole", "springs join bodies at most this many moving joints apart (default 2)")
@@ -67,7 +71,7 @@ class ProblemOptions(Options):
     radius: Amount | None = option(None, "length", "of every attachment region (default: from each link's size)")
     shape: Shape = "ball"
     regions: Mapping[str, Given] | None = None
-    objective: Objective = option("rms", "text", "what is minimised (default rms torque)", OBJECTIVES)
+    objective: Objective | None = option(None, "text", "what is minimised (default rms torque)", OBJECTIVES)
     joints: Iterable[str] | None = option(None, "names", "A,B,...: the joints whose torque counts (default: all)")
     weights: Mapping[str, float] | None = option(
         None, "number", "factor by which a joint's torque counts (default 1); BODY is a joint's name", each=True
@@ -79,7 +83,8 @@ class ProblemOptions(Options):
     counterweights: Amount | Mapping[str, Amount] | None = option(
         None, "length", "weights too, within this of each link's origin, or of one BODY's", each=True
     )
-    loads: Iterable[Load] = (OWN,)
+    loads: Iterable[Load] | None = None
+    goal: Goal | None = None
 
 
 @dataclass(frozen=True)
@@ -93,6 +98,7 @@ class Problem:
         radius, shape: of the other regions [m]; by default from each link's size.
         beside: other blocks of unknowns than the springs of the pairs.
         objective, joints, weights, samples, seed, unlimited, keep, loads: see `ProblemOptions`.
+        goal: what else counts: the motors.
 
     Raises:
         InputError: an unknown body or joint, a pair of one body, nothing to choose, an option out of range, a region
@@ -114,13 +120,16 @@ class Problem:
     shape: Shape = "ball"
     beside: tuple[Block, ...] = ()
     span: int | None = None
+    goal: Goal = BY_DEFAULT
 
     @staticmethod
     @takes(ProblemOptions)
     def of(mechanism: Source, options: ProblemOptions) -> Problem:
         """The problem with sensible defaults; see `ProblemOptions`, and `Problem` for what it raises."""
-        mechanism = loaded(mechanism)
         given = options.of(ProblemOptions)
+        mechanism = loaded(mechanism)
+        goal = mechanism.goal if options.goal is None else options.goal
+        given |= asked(goal, given)
         if given["pairs"] is None:
             whole_number("span", options.span, 1)
             mounts = Mounts.of(mechanism if options.keep else mechanism.with_springs(()))
@@ -129,10 +138,14 @@ class Problem:
             given["pairs"] = mounts.pairs(options.span)
         else:
             given["span"] = None
-        given["regions"], given["weights"] = options.regions or {}, options.weights or {}
+        given["regions"] = options.regions or {}
         weights = given.pop("counterweights")
         given["beside"] = () if weights is None else tuple(CounterweightBlock.each(mechanism, weights))
-        return Problem(mechanism, **given)
+        problem = Problem(mechanism, **given)
+        written = stated(goal, problem)
+        if written or mechanism.goal:
+            problem = replace(problem, mechanism=with_means(mechanism, written), goal=written)
+        return problem
 
     def __post_init__(self) -> None:
         whole_number("seed", self.seed, 0)
@@ -144,7 +157,7 @@ class Problem:
         for body in self.regions:
             _known(self.mechanism, "regions", (body,))
         self._set("pairs", _distinct(_known(self.mechanism, "pairs", p) for p in self.pairs))
-        if not self.pairs and not self.beside:
+        if not self.pairs and not self.beside and not self.keep:
             raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
         self._set("regions", given_regions(self.mechanism, self.regions, self.shape))
         self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
@@ -217,8 +230,15 @@ class Problem:
 
     @cached_property
     def cases(self) -> tuple[Mechanism, ...]:
-        """`judged` under each load."""
-        return tuple(load.on(self.judged) for load in self.loads)
+        """`judged` under each load, of a tilt in several directions."""
+        return tuple(case for load in self.loads for case in load.each(self.judged))
+
+    @cached_property
+    def shares(self) -> Array:
+        """(cases,) what the mean square torque of each of `cases` counts; they add up to 1."""
+        each = [(load.weight, len(load.each(self.judged))) for load in self.loads]
+        every = np.array([weight / count for weight, count in each for _ in range(count)])
+        return np.asarray(every / every.sum())
 
     @property
     def count(self) -> int:
@@ -229,13 +249,16 @@ class Problem:
     def scale(self) -> Array:
         """(n,) what each coordinate's torque counts: 1 for an angle, the mechanism's reach [m] for a slide's force.
 
-        Times its weight, and 0 for those that do not count.
+        Or what its motor makes of it. Times its weight, and 0 for those that do not count.
+
+        Raises:
+            InputError: a joint that counts has no motor that is known.
         """
         tree = Tree.of(self.judged)
-        every = np.where(tree.turns, 1.0, Mounts.of(self.judged).reach)
         counted = [self.joints is None or name in self.joints for name in tree.coordinates]
-        weights = [self.weights.get(name, 1.0) for name in tree.coordinates]
-        return np.where(counted, every * weights, 0.0)
+        weights = np.where(counted, [self.weights.get(name, 1.0) for name in tree.coordinates], 0.0)
+        every = motor_scale(self.goal.count, tree, weights > 0)
+        return weights * (np.where(tree.turns, 1.0, Mounts.of(self.judged).reach) if every is None else every)
 
 
 def _coordinates(mechanism: Mechanism, field: str, name: str) -> list[Coordinate]:

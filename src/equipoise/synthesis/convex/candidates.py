@@ -37,7 +37,7 @@ def front_row(goal: Goal, count: int, found: SpringSet, bound: float | None) -> 
         bound: none of the sets with so many parts leaves less, as a share of the goal's unit.
     """
     mechanism = with_parts(goal.reduced, found.parts)
-    proofs = (proof_of(load.on(mechanism))[0] for load in goal.reduced.problem.loads)
+    proofs = (proof_of(case)[0] for load in goal.reduced.problem.loads for case in load.each(mechanism))
     least = None if bound is None else min(bound, found.value)
     return FrontRow(
         springs=count,

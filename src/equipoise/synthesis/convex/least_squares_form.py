@@ -110,8 +110,7 @@ def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresFor
         InputError: its loops cannot be closed, its numbers or regions are so large that the torques overflow.
     """
     blocks = problem.blocks
-    weights = np.array([load.weight for load in problem.loads])
-    shares = np.sqrt(weights / weights.sum())
+    shares = np.sqrt(problem.shares)
     with np.errstate(over="ignore", invalid="ignore"):
         factors, energy, averaged = _factors(problem, progress)
         weighted = np.vstack([share * F for share, F in zip(shares, factors, strict=True)])
@@ -128,8 +127,16 @@ def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresFor
     columns = _split(S[:rank, None] * Vt[:rank], blocks)
     forms = tuple(block.form(own) / unit for block, own in zip(blocks, columns, strict=True))
     cost = tuple(block.cost(own) for block, own in zip(blocks, _split(energy, blocks), strict=True))
-    cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in factors)
+    cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in _by_load(problem, factors))
     return LeastSquaresForm(problem, blocks, forms, d / unit, float(rest) / unit, cost, total, averaged, cases)
+
+
+def _by_load(problem: Problem, factors: Sequence[Array]) -> Iterator[Array]:
+    """Of the factors of all cases one for each load: what is of several cases counts their mean."""
+    rest = iter(factors)
+    for load in problem.loads:
+        own = [next(rest) for _ in load.each(problem.judged)]
+        yield own[0] if len(own) == 1 else _triangle(np.vstack(own) / np.sqrt(len(own)))
 
 
 def together(problem: Problem) -> list[tuple[Mechanism, ...]]:
@@ -229,7 +236,7 @@ def torque_rows(blocks: Sequence[Block], loaded: Sequence[Mechanism], q: Array) 
     tree = Tree.of(loaded[0])
     loads = [Potential(mechanism) for mechanism in loaded]
     places = _places([block.unknowns for block in blocks])
-    width = places[-1].stop
+    width = sum(block.unknowns for block in blocks)
     size = max(1, CHUNK_ENTRIES // max(1, tree.n * width))
     for start in range(0, len(q), size):
         chunk = q[start : start + size]

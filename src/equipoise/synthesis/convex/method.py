@@ -174,6 +174,7 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
         loads=load_residuals(goal, found.parts),
         front=tuple(_rows(search)) if options.front else (),
         by_chance=found.by_chance,
+        goal=problem.mechanism.goal,
     ).with_provenance()
     if options.exact and not _exact(design, problem):
         raise InfeasibleError(
@@ -185,7 +186,7 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
 
 def _exact(design: Design, problem: Problem) -> bool:
     """Whether it is proved under every load."""
-    loaded = (load.on(design.mechanism) for load in problem.loads)
+    loaded = (case for load in problem.loads for case in load.each(design.mechanism))
     return all((design.balance if m == design.mechanism else check(m)).exact for m in loaded)
 
 

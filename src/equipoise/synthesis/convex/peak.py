@@ -6,7 +6,7 @@ poses is a bound for all, so stopping early never makes it wrong.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -14,9 +14,14 @@ import numpy as np
 
 from ...kinematics import Tree, sample
 from ...kinematics.sampling import inside
-from ...model.arrays import Array, Booleans, Integers, frozen
+from ...model.arrays import Array, Booleans, Integers, frozen, vec3
+from ...model.errors import Fault, InputError
+from ...model.mechanism import Mechanism
+from ..load import Load, extremes
+from ..problem import Problem
+from .blocks import Block
 from .goal import Goal
-from .least_squares_form import LeastSquaresForm, together, torque_rows
+from .least_squares_form import LeastSquaresForm, torque_rows
 from .polish import Parts, best_amounts, jacobian, polish, residual
 from .semidefinite import Bound, Program, peak_program
 
@@ -30,62 +35,92 @@ CORNERS = 256  # poses at the ends of the joint ranges, where the worst is often
 
 @frozen
 class Peak(Goal):
-    """The torques of a problem at random poses, one row per load, pose and coordinate.
+    """The torques of a problem at random poses, one row per pose and coordinate, and one more per load with weight.
 
-    Every torque is linear in the same few numbers ``w = reduced.times(x)`` as the mean square, so a row is short.
+    Every torque is linear in the same few numbers ``w = reduced.times(x)`` as the mean square, so a row is short. What
+    the loads do there lies between a least and a largest torque: those are all that a peak needs of them.
 
     Attributes:
-        L: (rows, len(w)), load: (rows,): the torque is ``L w + load``, as a share of `unit`.
+        L: (rows, len(w)), low, high: (rows,): the torque is from ``L w + low`` to ``L w + high``, as a share of `unit`.
+        each: of every load by itself its rows, and their low and high.
         unit: [N m] the largest torque without any parts.
         rows: those that the program has, where the bound is of no interest.
     """
 
     reduced: LeastSquaresForm
     L: Array
-    load: Array
+    low: Array
+    high: Array
+    each: tuple[tuple[slice, Array, Array], ...]
     unit: float
     numbers: Integers
     rows: Booleans | None = None
 
     @staticmethod
     def of(reduced: LeastSquaresForm) -> Peak:
-        """The rows over random poses inside the joint ranges, and at ends of these."""
+        """The rows over random poses inside the joint ranges, and at ends of these.
+
+        Raises:
+            InputError: gravity leans, and parts have weight.
+        """
         problem = reduced.problem
+        weighty = any(block.weighs for block in problem.blocks)
+        if weighty and any(load.tilt for load in problem.loads):
+            message = "the largest torque over a cone of tilts is not known for parts that have weight; rms is"
+            raise InputError(Fault(("tilt",), message))
         to_w = np.linalg.pinv(np.concatenate(reduced.columns, axis=1))
         q = peak_poses(Tree.of(problem.judged), problem.count, problem.seed)
-        each: list[tuple[Array, Array]] = []  # for every load
-        for loaded in together(problem):
-            L, loads = [], []
-            for T, torque, _ in torque_rows(reduced.blocks, loaded, q):
-                L.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(reduced.d)))
-                loads.append((torque * problem.scale[:, None]).reshape(-1, len(loaded)))
-            each += [(np.concatenate(L), load) for load in np.concatenate(loads).T]
-        every = np.concatenate([load for _, load in each])
-        unit = float(np.abs(every).max()) or 1.0
-        L = np.concatenate([L for L, _ in each]) / unit
-        return Peak(reduced, L, every / unit, unit, np.arange(len(reduced.blocks)))
+        L, low, high = [], [], []
+        each: list[tuple[slice, Array, Array]] = []
+        start = 0
+        for loads in [(load,) for load in problem.loads] if weighty else [problem.loads]:
+            rows, ends = [], []
+            for T, torque in torque_ends(reduced.blocks, loads, problem.judged, q):
+                rows.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(reduced.d)))
+                ends.append((torque * problem.scale[:, None, None]).reshape(-1, len(loads), 2))
+            L.append(np.concatenate(rows))
+            own = np.concatenate(ends)
+            place = slice(start, start + len(own))
+            each += [(place, own[:, i, 0], own[:, i, 1]) for i in range(len(loads))]
+            low.append(own[:, :, 0].min(axis=1))
+            high.append(own[:, :, 1].max(axis=1))
+            start = place.stop
+        least, most = np.concatenate(low), np.concatenate(high)
+        unit = float(max(most.max(), -least.min())) or 1.0
+        scaled = tuple((place, a / unit, b / unit) for place, a, b in each)
+        L = np.concatenate(L) / unit
+        return Peak(reduced, L, least / unit, most / unit, scaled, unit, np.arange(len(reduced.blocks)))
 
     def on(self, chosen: Sequence[int]) -> Peak:
         return replace(self, reduced=self.reduced.on(chosen), numbers=self.numbers[list(chosen)], rows=self._rows)
 
     def torques(self, parts: Parts) -> Array:
-        """(batch, rows) torque with sets of parts."""
-        return (residual(self.reduced, parts) - self.reduced.d) @ self.L.T + self.load
+        """(batch, rows) size of the torque with sets of parts, the worst of all loads."""
+        return self._size((residual(self.reduced, parts) - self.reduced.d) @ self.L.T)
+
+    def _size(self, torque: Array) -> Array:
+        """(..., rows) size of the torque where the parts make `torque` (..., rows)."""
+        return np.maximum(torque + self.high, -torque - self.low)
 
     def torque(self, parts: Parts) -> Array:
-        """(rows,) torque with a set of parts (batch of 1)."""
-        return self.torques(parts)[0]
+        """(rows,) what a set of parts (batch of 1) makes."""
+        return ((residual(self.reduced, parts) - self.reduced.d) @ self.L.T)[0]
 
     def loads(self, parts: Parts) -> tuple[Array, Array]:
-        return self._largest(self.torque(parts)), self._largest(self.load)
+        made = self.torque(parts)
+        return self._largest(made), self._largest(0 * made)
 
-    def _largest(self, torque: Array) -> Array:
-        """[N m] (loads,) the largest of the torques (rows,) under each load."""
-        return self.unit * np.abs(torque).reshape(len(self.reduced.problem.loads), -1).max(axis=1)
+    def _largest(self, made: Array) -> Array:
+        """[N m] (loads,) the largest torque under each load where the parts make `made` (rows,)."""
+        ends = ((made[rows], low, high) for rows, low, high in self.each)
+        return self.unit * np.array([max((own + high).max(), -(own + low).min()) for own, low, high in ends])
 
     @cached_property
     def program(self) -> Program:
-        return peak_program(self.reduced, self.L[self._rows], self.load[self._rows])
+        return self._program(self._rows)
+
+    def _program(self, rows: Booleans) -> Program:
+        return peak_program(self.reduced, self.L[rows], self.low[rows], self.high[rows])
 
     @cached_property
     def bound(self) -> Bound:
@@ -98,22 +133,22 @@ class Peak(Goal):
     @cached_property
     def _cut(self) -> tuple[Booleans, Bound]:
         """The rows that matter, and the optimum with them."""
-        chosen = np.zeros(len(self.load), bool)
-        chosen[np.random.default_rng(0).permutation(len(self.load))[:FIRST]] = True
-        chosen[np.argsort(-np.abs(self.load))[:CUTS]] = True
-        best = peak_program(self.reduced, self.L[chosen], self.load[chosen]).solve()
+        chosen = np.zeros(len(self.L), bool)
+        chosen[np.random.default_rng(0).permutation(len(self.L))[:FIRST]] = True
+        chosen[np.argsort(-self._size(np.zeros(len(self.L))))[:CUTS]] = True
+        best = self._program(chosen).solve()
         for _ in range(POLISH_ROUNDS):
-            torque = np.abs(self.L @ self.reduced.times(best.x) + self.load)
-            if torque.max() <= best.value * (1 + CLOSE) + 1e-9:
+            size = self._size(self.L @ self.reduced.times(best.x))
+            if size.max() <= best.value * (1 + CLOSE) + 1e-9:
                 break
-            chosen[np.argsort(-torque)[:CUTS]] = True
-            best = peak_program(self.reduced, self.L[chosen], self.load[chosen]).solve()
+            chosen[np.argsort(-size)[:CUTS]] = True
+            best = self._program(chosen).solve()
         return chosen, best
 
     def improve(self, parts: Parts) -> tuple[Parts, Array]:
         """Of the most promising of them, as they are and polished for the mean square."""
         starts = Parts.joined([best_amounts(self.reduced, parts), polish(self.reduced, parts)[0]])
-        peaks = np.abs(self.torques(starts)).max(axis=1)
+        peaks = self.torques(starts).max(axis=1)
         found = [self.polish(starts[i : i + 1]) for i in np.argsort(peaks, kind="stable")[:KEPT].tolist()]
         return Parts.joined([own for own, _ in found]), np.array([value for _, value in found])
 
@@ -126,13 +161,14 @@ class Peak(Goal):
         from scipy.optimize import linprog
 
         now, trust = start, 0.3
-        tau = self.torque(now)
-        value = float(np.abs(tau).max())
-        chosen = np.zeros(len(tau), bool)
+        made = self.torque(now)
+        size = self._size(made)
+        value = float(size.max())
+        chosen = np.zeros(len(made), bool)
         for _ in range(20 * POLISH_ROUNDS):
             if trust < 1e-7:
                 break
-            chosen[np.argsort(-np.abs(tau))[:CUTS]] = True
+            chosen[np.argsort(-size)[:CUTS]] = True
             J = self.L[chosen] @ jacobian(self.reduced, now)[0]
             one = np.ones((len(J), 1))
             width = (now.k.shape[1], 1 + now.u.shape[2])
@@ -142,22 +178,23 @@ class Peak(Goal):
             program = linprog(
                 np.append(np.zeros(J.shape[1]), 1.0),
                 np.vstack([np.hstack([J, -one]), np.hstack([-J, -one]), A]),
-                np.concatenate([-tau[chosen], tau[chosen], b]),
+                np.concatenate([-(made + self.high)[chosen], (made + self.low)[chosen], b]),
                 bounds=[*zip(lower.ravel(), upper.ravel(), strict=True), (0, None)],
             )
             if program.x is None:
                 break
             trial = now.moved(self.reduced, program.x[:-1].reshape(1, *lower.shape))
-            tau_trial = self.torque(trial)
-            new = float(np.abs(tau_trial).max())
+            made_trial = self.torque(trial)
+            size_trial = self._size(made_trial)
+            new = float(size_trial.max())
             if new < value:
                 trust = min(1.0, trust * 1.5) if value - new > 0.5 * (value - program.x[-1]) else trust
                 stalled = value - new < 1e-7 * value
-                now, tau, value = trial, tau_trial, new
+                now, made, size, value = trial, made_trial, size_trial, new
                 if stalled:
                     break
             else:
-                chosen[np.argsort(-np.abs(tau_trial))[:CUTS]] = True
+                chosen[np.argsort(-size_trial)[:CUTS]] = True
                 trust *= 0.4
         return now, value
 
@@ -173,6 +210,35 @@ class Peak(Goal):
             rows.append(own)
             sides.append(b)
         return np.concatenate(rows), np.concatenate(sides)
+
+
+def largest(problem: Problem) -> float:
+    """[N m] the largest torque of what stays, without any parts; see `Peak`."""
+    q = peak_poses(Tree.of(problem.judged), problem.count, problem.seed)
+    ends = (torque for _, torque in torque_ends((), problem.loads, problem.judged, q))
+    scale = problem.scale[:, None, None]
+    return max(float(np.abs(scale * one).max(initial=0.0)) for one in ends)
+
+
+def torque_ends(
+    blocks: Sequence[Block], loads: Sequence[Load], mechanism: Mechanism, q: Array
+) -> Iterator[tuple[Array, Array]]:
+    """As `torque_rows`, in chunks: torque of each unknown, and the least and largest of each load (..., loads, 2)."""
+    loaded, places = [], []
+    for load in loads:
+        upright = load.on(mechanism)
+        gravities = [upright.gravity] if not load.tilt else [vec3(g) for g in (np.zeros(3), *np.eye(3))]
+        places.append((load, upright.gravity, len(loaded)))
+        loaded += [replace(upright, gravity=g) for g in gravities]
+    for T, torque, _ in torque_rows(blocks, loaded, q):
+        ends = []
+        for load, g, i in places:
+            still = torque[..., i]
+            low, high = 0.0, 0.0
+            if load.tilt:
+                low, high = extremes(torque[..., i + 1 : i + 4] - still[..., None], np.array(g), load.tilt)
+            ends.append(np.stack([still + low, still + high], axis=-1))
+        yield T, np.stack(ends, axis=-2)
 
 
 def peak_poses(tree: Tree, count: int, seed: int) -> Array:

@@ -165,17 +165,17 @@ def rms_program(reduced: LeastSquaresForm) -> Program:
     return program
 
 
-def peak_program(reduced: LeastSquaresForm, L: Array, load: Array) -> Program:
-    """The program whose optimum is the least of the largest torques ``|L w + load|`` with ``w = reduced.times(x)``.
+def peak_program(reduced: LeastSquaresForm, L: Array, low: Array, high: Array) -> Program:
+    """The program whose optimum is the least of the largest torques, see `Peak`, with ``w = reduced.times(x)``.
 
     Args:
-        L: (rows, len(w)), load: (rows,), as shares of any unit: see `Peak`.
+        L: (rows, len(w)), low, high: (rows,): torques from ``L w + low`` to ``L w + high``, as shares of any unit.
     """
     r = L.shape[1]
     program = Program(reduced, extra=r + 1)  # w, and the peak t
     w, t = program.width - r - 1, program.width - 1
     program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
-    for sign in (1.0, -1.0):
+    for sign, load in ((1.0, high), (-1.0, low)):
         program.add("nonnegative", -sign * load, [(0, w, sign * L), (0, t, -np.ones((len(load), 1)))])
     return program
 
