@@ -68,12 +68,12 @@ def test_what_is_wrong_is_said_at_its_line(tmp_path, line, message):
 
 
 def test_efforts_are_kept_from_urdf_and_mjcf(tmp_path):
-    panda = robot("panda")
-    efforts = {j.name: j.effort for j in panda.joints if j.effort}
-    assert efforts["panda_joint4"] == 87.0
-    assert efforts["panda_joint5"] == 12.0
-    for name, module in (("panda.urdf", urdf), ("panda.xml", mjcf)):
-        (tmp_path / name).write_text(module.to_text(panda))
+    arm = robot("ur5")
+    efforts = {j.name: j.effort for j in arm.joints if j.effort}
+    assert efforts["elbow_joint"] == 150.0
+    assert efforts["wrist_1_joint"] == 28.0
+    for name, module in (("arm.urdf", urdf), ("arm.xml", mjcf)):
+        (tmp_path / name).write_text(module.to_text(arm))
         again = eq.load(tmp_path / name)
         assert {j.name: j.effort for j in again.joints if j.effort} == efforts
 
