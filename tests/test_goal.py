@@ -67,6 +67,7 @@ def test_what_is_wrong_is_said_at_its_line(tmp_path, line, message):
     assert f"{path}:6:" in str(caught.value)
 
 
+@pytest.mark.filterwarnings("ignore:links with identical inertials")
 def test_efforts_are_kept_from_urdf_and_mjcf(tmp_path):
     arm = robot("ur5")
     efforts = {j.name: j.effort for j in arm.joints if j.effort}
