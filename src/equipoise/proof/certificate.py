@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -18,13 +18,14 @@ from ..io import Source, loaded
 from ..io.files import read_text, write_text
 from ..kinematics import Tree
 from ..kinematics.sampling import whole_turns
+from ..model.arrays import vec3
 from ..model.errors import EquipoiseError, NoFourierForm
 from ..model.mechanism import Mechanism
 from ..model.units import Amount, quantity
 from ..synthesis.convex.spring_block import SpringBlock
 from ..synthesis.fewest import Fewest, fewest
 from ..synthesis.problem import Problem
-from ..synthesis.region import SHAPES, Region
+from ..synthesis.region import Region
 from . import verify as alone
 from .dual import lower_bound
 from .enclosure import Enclosure
@@ -147,15 +148,23 @@ def _bound(problem: Problem, enclosure: Enclosure, stiffness: float) -> tuple[di
         raise NoFourierForm("springs on these pairs may leave nothing, as far as is known")
     claim = {
         "at_least": rounded(found.least - FLOOR, up=False),
-        "pairs": [[block.body_a, block.body_b] for block in blocks],
-        "regions": {
-            body: {"shape": one.shape, "centre": [*map(text, one.centre)], "half": [*map(text, one.half)]}
-            for body, one in problem.attachments.items()
-        },
+        "pairs": [
+            {
+                "body_a": block.body_a,
+                "region_a": _region(block.region_a),
+                "body_b": block.body_b,
+                "region_b": _region(block.region_b),
+            }
+            for block in blocks
+        ],
         "counted": {name: text(x) for name, x in zip(enclosure.names, scale.tolist(), strict=True) if x},
         "stiffness": text(stiffness),
     }
     return claim, found.proof
+
+
+def _region(region: Region) -> dict[str, Any]:
+    return {"shape": region.shape, "centre": [*map(text, region.at)], "half": [*map(text, region.half)]}
 
 
 def _designed_for(mechanism: Mechanism) -> Problem:
@@ -170,11 +179,9 @@ def _designed_for(mechanism: Mechanism) -> Problem:
     for name in ("keep", "loads"):
         if options.get(name):
             raise NoFourierForm(f"it was designed with '{name}', whose bound is not certified")
-    if any(one["shape"] not in SHAPES for one in options["regions"].values()):
-        raise NoFourierForm("it was designed with regions whose bound is not certified")
     regions = {
-        body: Region(tuple(map(float, one["centre"])), tuple(map(float, one["half"])), one["shape"])  # type: ignore[arg-type]
-        for body, one in options["regions"].items()
+        body: [Region(vec3(one["centre"]), vec3(one["half"]), one["shape"]) for one in _several(own)]
+        for body, own in options["regions"].items()
     }
     return Problem.of(
         mechanism.with_springs(()),
@@ -184,6 +191,11 @@ def _designed_for(mechanism: Mechanism) -> Problem:
         weights=options.get("weights"),
         unlimited=options.get("unlimited", False),
     )
+
+
+def _several(regions: Any) -> Iterable[Mapping[str, Any]]:
+    """One region or a union of them."""
+    return [regions] if isinstance(regions, Mapping) else regions
 
 
 def _fewest(mechanism: Mechanism, found: Fewest) -> dict[str, Any]:

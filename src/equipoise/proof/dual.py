@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from ..model.arrays import Array, Integers
-from ..synthesis.convex.spring_block import COLUMN, ENDS, ONE, ROW, SIDE, SpringBlock, svec
+from ..synthesis.convex.spring_block import SpringBlock, Upper, svec
 from .enclosure import Enclosure, Key, Terms
 
-ORDER = [ONE, *ENDS[0], *ENDS[1]]  # of y = [u_a, 1, u_b] as a certificate counts: [1, u_a, u_b]
+SIDE, ONE = 7, 3  # of y = [u_a, 1, u_b], with what a flat region fixes, and where the 1 is
+ORDER = [ONE, 0, 1, 2, 4, 5, 6]  # of y = [u_a, 1, u_b] as a certificate counts: [1, u_a, u_b]
 SLACK = 1e-13  # of the largest entry: what double precision may miss of an eigenvalue
 TOLERANCE = 1e-10
 
@@ -142,7 +143,7 @@ def lower_bound(
     Returns:
         None where that is nothing.
     """
-    forms = [enclosure.form(block.body_a, block.body_b, block.lift.tolist()) for block in blocks]
+    forms = [enclosure.form(block.body_a, block.body_b, _lift(block).tolist()) for block in blocks]
     rows = Rows(enclosure, forms, scale)
     limits = [multipliers(block) for block in blocks]
     y, amounts, shift = _solved(rows, limits, stiffness)
@@ -186,6 +187,14 @@ def lower_bound(
     return LowerBound(value, proof) if value > 0 else None
 
 
+def _lift(block: SpringBlock) -> Array:
+    """(7, 7) maps y to z = [p_a; 1; p_b] in the bodies' coordinates."""
+    L = np.zeros((SIDE, SIDE))
+    L[:4, :4] = block.region_a.lift
+    L[4:, 4:], L[4:, ONE] = block.region_b.lift[:3, :3], block.region_b.lift[:3, 3]
+    return L
+
+
 def _solved(rows: Rows, limits: Sequence[Sequence[Multiplier]], stiffness: float) -> tuple[Array, list[Array], float]:
     """The dual solution in double precision: a trial torque, each pair's multipliers, and that of the stiffness."""
     import clarabel
@@ -194,7 +203,8 @@ def _solved(rows: Rows, limits: Sequence[Sequence[Multiplier]], stiffness: float
     columns, load = rows.columns
     unit = float(np.linalg.norm(load)) or 1.0
     Q, R = np.linalg.qr(np.column_stack([*columns, load]), mode="reduced")
-    many, back = len(ROW), np.argsort(ORDER)
+    upper, back = Upper.of(SIDE), np.argsort(ORDER)
+    many = len(upper.row)
     scale = [1 / max(float(np.linalg.norm(own)), 1e-300) for own in columns]
     width = many * len(columns) + 1
     A, b, cones = [], [], []
@@ -213,7 +223,7 @@ def _solved(rows: Rows, limits: Sequence[Sequence[Multiplier]], stiffness: float
         A.append(rows_of(-forms, p * many))
         b.append(np.zeros(len(own)))
         cones.append(clarabel.NonnegativeConeT(len(own)))
-    middle = ((ROW == ONE) & (COLUMN == ONE)) * 1.0
+    middle = ((upper.row == ONE) & (upper.column == ONE)) * 1.0
     cap = np.concatenate([*(s * unit / stiffness * middle for s in scale), [0.0]])
     A.append(sparse.lil_matrix(cap[None]))
     b.append(np.ones(1))

@@ -206,8 +206,8 @@ def check_bound(tree, claim, proof):
         return middle, radius
 
     shift = abs(number(proof["shift"]))
-    for (a, b), own in zip(claim["pairs"], proof["pairs"], strict=True):
-        one, two = (claim["regions"][body] for body in (a, b))
+    for pair, own in zip(claim["pairs"], proof["pairs"], strict=True):
+        a, b, one, two = (pair[key] for key in ("body_a", "body_b", "region_a", "region_b"))
         half = [1, *vector(one["half"]), *vector(two["half"])]
         columns = [tree.point(b, vector(two["centre"])) + tree.point(a, vector(one["centre"]), -1)]
         for i in range(1, 7):

@@ -17,7 +17,7 @@ def certificate_lines(found: Certified) -> Iterator[str]:
         where = " within the ranges of what slides" if torque["within"] else ""
         yield f"{name}: proved at every configuration{where}: the torque is at most [N m or N] {least}"
     if bound := claims.get("bound"):
-        pairs = ", ".join(":".join(pair) for pair in bound["pairs"])
+        pairs = ", ".join(dict.fromkeys(f"{pair['body_a']}:{pair['body_b']}" for pair in bound["pairs"]))
         yield (
             f"proved: springs on {pairs} in these regions, of at most {_ratio(bound['stiffness']):.4g} N/m together, "
             f"leave at least {float(bound['at_least']):.6g} N m rms"
