@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import zoo
+from peers import peer
 from robots import lee_chen_springs, robot
 
 import equipoise as eq
 from equipoise.clearance import ClearanceConstraint, clearance
 from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InfeasibleError, InputError
-from equipoise.model.mechanism import Capsule
+from equipoise.model.mechanism import Capsule, Shape
 from equipoise.synthesis.convex.ordinary import ordinary
 
 
@@ -66,6 +67,33 @@ def test_a_spring_steps_aside_and_balances_as_before():
 def test_three_springs_of_an_arm_get_out_of_each_others_way():
     m = lee_chen_springs()
     found = ordinary(m.with_springs(replace(s, diameter=0.02) for s in m.springs), clearance=0.005)
+    assert found.room is not None
+    assert found.room[0].least < 0
+    assert found.room[1].least >= 0.005
+    assert found.balance.exact
+
+
+def test_what_has_room_enough_stays_as_it_is_to_the_last_digit(run, tmp_path):
+    m = near_post(0.1)
+    found = ordinary(m, clearance=0.05)
+    assert found.mechanism is m
+    eq.save(m.with_springs(()), tmp_path / "arm.yaml")
+    without, with_room = tmp_path / "without.yaml", tmp_path / "with.yaml"
+    base = ("design", tmp_path / "arm.yaml", "--span", 1, "--radius", "200mm")
+    plain = json.loads(run(*base, "-o", without, "--json")[1])
+    answer = json.loads(run(*base, "--clearance", "5mm", "-o", with_room, "--json")[1])
+    assert eq.load(with_room).springs == eq.load(without).springs
+    for key in ("residual", "unbalanced", "bound", "certified_gap", "averaged", "balance"):
+        assert answer[key] == plain[key]
+    assert "nothing was moved" in run(*base, "--clearance", "5mm")[1]
+
+
+def test_springs_keep_away_from_solids_too():
+    """The post as a cylinder, which the collision library measures, in place of a capsule."""
+    peer("coal")
+    m = near_post()
+    shape = Shape("post", "stand", "cylinder", (0.02, 0.02, 2.0), (0.05, 0.01, 0.0))
+    found = ordinary(replace(m, capsules=(), shapes=(shape,)), clearance=0.005)
     assert found.room is not None
     assert found.room[0].least < 0
     assert found.room[1].least >= 0.005

@@ -1,4 +1,4 @@
-"""How close springs come to links and to each other, and the poses in which a spring does not do its work."""
+"""How close springs, weights and links come to each other, and the poses in which a spring does not do its work."""
 
 from .constraint import ClearanceConstraint
 from .segments import closest

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,12 +16,14 @@ def clearance(
     file: File,
     least: Annotated[str, typer.Option(help="good when every distance is at least this")] = "0 mm",
     samples: Annotated[int | None, typer.Option(min=1, help="random poses (default: the file's workspace)")] = None,
+    plot: Annotated[Path | None, typer.Option(help="draw the closest pose: .svg, .png or .pdf")] = None,
     seed: Annotated[int, typer.Option(min=0, help="of the random poses")] = 0,
     json: Json = False,
 ) -> None:
-    """Do the springs have room? Smallest distances to links (the file's capsules) and to each other, slack poses.
+    """Do springs, cables and weights have room? Smallest distances to links and to each other, slack poses.
 
-    Exit code 1 when a distance is below [bold]--least[/bold].
+    Links are as large as the file's capsules and shapes say, or the geometry of its URDF or MJCF. Exit code 1 when a
+    distance is below [bold]--least[/bold], or when nothing says how large the links are: then they are not judged.
 
     Example: [bold]equipoise clearance balanced.yaml --least 5mm[/bold]
     """
@@ -28,14 +31,25 @@ def clearance(
     from . import options
 
     limit = options.length(least, "--least")
+    if plot:
+        from ..report.figure import check_drawable
+
+        check_drawable(plot)
     mechanism = terminal.load(file)
     with terminal.progress_bar("measuring") as report:
         report("measuring distances", 0.0)
         found = judge(mechanism, samples=samples, seed=seed)
+        if plot and found.gaps:
+            from ..report.worst_pose import save_worst_pose
+
+            report("drawing", 0.0)
+            save_worst_pose(mechanism, found, plot)
+    if plot:
+        terminal.say(f"wrote {plot}" if found.gaps else f"wrote no {plot}: there is nothing to come close to")
     if json:
-        terminal.print_json(found.to_dict())
+        terminal.print_json(found.to_dict(limit))
     else:
         from ..report.clearance import clearance_lines
 
         terminal.show(clearance_lines(mechanism, found, limit))
-    raise typer.Exit(0 if found.least >= limit else 1)
+    raise typer.Exit(0 if found.clear(limit) else 1)

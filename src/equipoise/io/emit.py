@@ -34,7 +34,7 @@ def to_text(mechanism: Mechanism) -> str:
     Raises:
         InputError: the provenance holds something that is not text, a number, a bool, None, a list or a mapping.
     """
-    sections = ("bodies", "joints", "couplings", "loops", "springs", "masses", "capsules")
+    sections = ("bodies", "joints", "couplings", "loops", "springs", "masses", "capsules", "shapes")
     defaults = {f.name: f.default for f in dataclasses.fields(Mechanism)}
     document: dict[str, Any] = {"schema": SCHEMA, "name": mechanism.name}
     if mechanism.gravity != defaults["gravity"]:

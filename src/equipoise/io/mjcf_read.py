@@ -10,7 +10,7 @@ What becomes what, where the two differ:
 - A connect is a loop; two connects between the same bodies make a hinge loop. A weld is a hinge loop and a point more.
 - A hinge's stiffness, and a fixed tendon's along hinges, is a torsion spring.
 - A massless leaf of a body with nothing but a mass in one point is a point mass.
-- A capsule or sphere with a name is the space that its body takes.
+- What has a name or may touch something is the space that its body takes: see `mjcf_shapes`.
 - Loops close as in the keyframe "assembled", else as in the reference pose or the first keyframe that closes them;
   joints with an actuator steer them where that can be.
 
@@ -31,7 +31,7 @@ import numpy as np
 
 from ..model.arrays import Array, vec3
 from ..model.errors import Fault, InputError
-from ..model.mechanism import SINGLE, WORLD, Body, Capsule, Joint, JointType, Mechanism, PointMass
+from ..model.mechanism import SINGLE, WORLD, Body, Joint, JointType, Mechanism, PointMass
 from ..model.names import Names
 from ..model.rotation import about, from_quaternion, to_rpy
 from ..model.validate import LARGEST_COUNTS
@@ -40,6 +40,7 @@ from .mjcf_acts import Model
 from .mjcf_between import Between, Places
 from .mjcf_compile import compiled
 from .mjcf_pose import assembly, independent, joint_values
+from .mjcf_shapes import with_shapes
 from .notes import Notes
 from .xmltree import lines
 
@@ -112,8 +113,8 @@ class _Reader:
         found = Mechanism(
             model.names[: model.names.index(b"\0")].decode() or "mechanism", tuple(self.bodies), joints, couplings,
             loops, springs, tuple(self.masses), (0.0, 0.0, 0.0) if source.off("gravity") else vec3(model.opt.gravity),
-            capsules=self._capsules(),
         )  # fmt: skip
+        found = with_shapes(found, self.mj, model, self.place, source.notes)
         for j, name in self.joint_of.items():
             if self._type(j) == "floating" and self.base is None and not freed.held(found, name):
                 source.refuse("joint", j, freed.FREE)
@@ -133,20 +134,6 @@ class _Reader:
 
     def _type(self, j: int) -> JointType | Literal["floating"]:
         return TYPES[str(self.mj.mjtJoint(int(self.model.jnt_type[j])).name)]
-
-    def _capsules(self) -> tuple[Capsule, ...]:
-        mj, model, found = self.mj, self.model, []
-        for g in range(model.ngeom):
-            kind, name = int(model.geom_type[g]), model.geom(g).name
-            if not name or kind not in (int(mj.mjtGeom.mjGEOM_CAPSULE), int(mj.mjtGeom.mjGEOM_SPHERE)):
-                continue
-            radius, half = (float(x) for x in model.geom_size[g, :2])
-            body, origin = self.place[int(model.geom_bodyid[g])]
-            half = half if kind == int(mj.mjtGeom.mjGEOM_CAPSULE) else 0.0
-            reach = half * from_quaternion(model.geom_quat[g])[:, 2]
-            p_a, p_b = (vec3(origin + model.geom_pos[g] + sign * reach) for sign in (1, -1))
-            found.append(Capsule(name, body, p_a, p_b, radius))
-        return tuple(found)
 
     def _body(self, b: int, leaf: bool) -> None:
         model = self.model

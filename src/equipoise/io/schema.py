@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo, field_validator
 
 from ..model.errors import COUNTED, Fault, InputError, Path, nearest
-from ..model.mechanism import SINGLE
+from ..model.mechanism import SHAPES, SINGLE, ShapeKind
 from .attachment_items import AttachmentItem
 from .fields import (
     Angle,
@@ -118,6 +118,18 @@ class CapsuleItem(Item):
     radius: Length
 
 
+class ShapeItem(Item):
+    noun = "a shape"
+    name: Text
+    body: Text
+    kind: Annotated[ShapeKind, one_of("kind of shape", SHAPES)]
+    size: Point = (0.0, 0.0, 0.0)
+    xyz: Point = (0.0, 0.0, 0.0)
+    rpy: Angles = (0.0, 0.0, 0.0)
+    file: Text = ""
+    scale: Direction = (1.0, 1.0, 1.0)
+
+
 class WorkspaceItem(Item):
     noun = "a workspace"
     samples: Annotated[int, BeforeValidator(whole)] = 4096
@@ -159,6 +171,7 @@ class MechanismFile(Item):
     masses: list[MassItem] = Field(default_factory=list)
     attachments: list[AttachmentItem] = Field(default_factory=list)
     capsules: list[CapsuleItem] = Field(default_factory=list)
+    shapes: list[ShapeItem] = Field(default_factory=list)
     workspace: WorkspaceItem = WorkspaceItem()
     goal: GoalItem = GoalItem()
     provenance: dict[str, Any] = Field(default_factory=dict)
@@ -172,6 +185,7 @@ _ITEMS: dict[str, type[Item]] = {
     "masses": MassItem,
     "attachments": AttachmentItem,
     "capsules": CapsuleItem,
+    "shapes": ShapeItem,
     "workspace": WorkspaceItem,
     "dh": DhTable,
 }

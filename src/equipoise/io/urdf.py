@@ -29,6 +29,7 @@ from .notes import Notes
 from .urdf_joints import chained, effort, unrestricted
 from .urdf_known import CONVERTED, label, refuse_xacro, short, unread
 from .urdf_loops import loops
+from .urdf_shapes import with_shapes
 from .urdf_springs import springs
 from .urdf_write import MOMENTS, to_text, weld
 from .xmltree import Document, XmlElement
@@ -61,7 +62,7 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
     """Read a URDF file.
 
     Args:
-        path: the file; meshes it names are not needed.
+        path: the file; meshes it names are needed for clearance only.
         base: "fixed" holds what a floating joint carries where it is drawn, "free" lets it be free.
 
     Returns:
@@ -83,7 +84,7 @@ def read_text(text: str, file: str, base: str | None = None) -> Mechanism:
     document = Document(text, file)
     refuse_xacro(document)
     reader = _Reader(document, base)
-    mechanism = reader.mechanism()
+    mechanism = with_shapes(reader.mechanism(), document, reader.notes)
     unread(document, reader.notes)
     reader.notes.close()
     for message in inertia_lint(mechanism):
@@ -98,8 +99,7 @@ class _Reader:
     """
 
     def __init__(self, document: Document, base: str | None) -> None:
-        self.document, self.base = document, base
-        self.notes = Notes(document.file)
+        self.document, self.base, self.notes = document, base, Notes(document.file)
         self.faults = self.notes.faults
         self.broken = False  # a name is missing, so the tree cannot be judged
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
+from typing import TypeVar
 
 from ..model.elements import Element, Vec3
 from ..model.errors import Fault, InputError, Path, nearest
 from ..model.goal import Goal
-from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Shape, Workspace
 from ..model.units import quantity
 from . import dh, models
 from .emit import to_text
 from .fields import DIMENSION_OF
 from .files import read_text
+from .mesh_files import mesh_file
 from .schema import SCHEMA, MechanismFile, validate
 from .yaml_positions import Located, parse
 
@@ -59,6 +61,8 @@ class _Tree:
     joints: list[tuple[Joint, _Origin]] = field(default_factory=list)
     couplings: list[tuple[Coupling, _Origin]] = field(default_factory=list)
     gravity: Vec3 | None = None  # of the model, where the file has none
+    capsules: tuple[Capsule, ...] = ()  # of the model, like its shapes
+    shapes: tuple[Shape, ...] = ()
 
 
 def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mechanism:
@@ -75,8 +79,9 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             loops=tuple(Loop(**item.values()) for item in file.loops),
             springs=springs,
             masses=tuple(PointMass(**item.values()) for item in file.masses),
-            capsules=tuple(Capsule(**item.values()) for item in file.capsules),
+            capsules=_own([Capsule(**item.values()) for item in file.capsules], tree.capsules),
             attachments=tuple(item.attachment() for item in file.attachments),
+            shapes=_own(list(_shapes(file, FilePath(located.file).parent)), tree.shapes),
             gravity=tree.gravity or file.gravity,
             workspace=Workspace(**file.workspace.values()),
             goal=_goal(file),
@@ -96,6 +101,22 @@ def _goal(file: MechanismFile) -> Goal:
         return file.goal.goal()
     except InputError as error:
         raise InputError([replace(fault, path=("goal", *fault.path)) for fault in error.faults]) from None
+
+
+T = TypeVar("T", Capsule, Shape)
+
+
+def _own(written: list[T], model: Sequence[T]) -> tuple[T, ...]:
+    """What is written in the file, then what its model has under other names."""
+    names = {one.name for one in written}
+    return (*written, *(one for one in model if one.name not in names))
+
+
+def _shapes(file: MechanismFile, folder: FilePath) -> Iterator[Shape]:
+    """The file's shapes; meshes by their whole paths."""
+    for item in file.shapes:
+        shape = Shape(**item.values())
+        yield replace(shape, file=str(mesh_file(folder, shape.file) or shape.file)) if shape.file else shape
 
 
 def _springs(file: MechanismFile, located: Located) -> tuple[tuple[Element, ...], list[Fault]]:
@@ -118,6 +139,7 @@ def _tree(file: MechanismFile, located: Located, base: str | None) -> tuple[_Tre
             raise located.error([Fault(("dh",), f"give either '{key}' or 'dh', not both")])
     if file.model is not None:
         model = _model(file.model, located, base)
+        tree.capsules, tree.shapes = model.capsules, model.shapes
         tree.gravity = None if "gravity" in file.model_fields_set else model.gravity
         origin = _Origin(("model",), "the model")
         tree.bodies += [(body, origin) for body in model.bodies]

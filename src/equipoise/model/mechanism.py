@@ -7,13 +7,14 @@ when its coordinate is zero, and moves about (or along) `axis`, given in the chi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import Any, Literal, get_args
 
 from .coordinate import Coordinate, Slide
 from .elements import Element, Vec3
-from .errors import InputError
+from .errors import Fault, InputError, finite
 from .goal import BY_DEFAULT, Goal
 from .immutable import immutable
 from .region import Attachment
@@ -22,6 +23,8 @@ from .validate import faults
 WORLD = "world"
 JointType = Literal["fixed", "revolute", "prismatic", "spherical", "parallelogram"]
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)
+ShapeKind = Literal["box", "cylinder", "ellipsoid", "mesh"]
+SHAPES: tuple[str, ...] = get_args(ShapeKind)
 SINGLE = ("revolute", "prismatic")  # the joints with one coordinate: only these have an axis, a range, a coupling
 MOVING = (*SINGLE, "spherical")  # the joints that have coordinates of their own
 
@@ -124,6 +127,44 @@ class Capsule:
 
 
 @dataclass(frozen=True)
+class Shape:
+    """The space a link takes, where it is no capsule.
+
+    Attributes:
+        kind: box, cylinder (along z), ellipsoid or mesh, each about its own origin; a mesh as its file has it.
+        size: from side to side along its own axes [m]; of a cylinder the first two are its diameter. Not of a mesh.
+        xyz, rpy: its place and orientation in the frame of `body` [m, rad].
+        file: of a mesh.
+        scale: by which a mesh's numbers become m, along its axes.
+    """
+
+    name: str
+    body: str
+    kind: ShapeKind
+    size: Vec3 = (0.0, 0.0, 0.0)
+    xyz: Vec3 = (0.0, 0.0, 0.0)
+    rpy: Vec3 = (0.0, 0.0, 0.0)
+    file: str = ""
+    scale: Vec3 = (1.0, 1.0, 1.0)
+
+    def faults(self) -> Iterator[Fault]:
+        """What is wrong with it, paths from it on; its name and its body are checked with all others."""
+        yield from finite(("xyz",), self.xyz)
+        yield from finite(("rpy",), self.rpy)
+        yield from finite(("scale",), self.scale)
+        if self.kind == "mesh":
+            if not self.file:
+                yield Fault(("file",), "missing: a mesh needs it")
+            return
+        for length in self.size:
+            if not 0 < length < inf:
+                yield Fault(("size",), f"must be more than 0 m along each axis, found {length:g} m")
+                return
+        if self.kind == "cylinder" and self.size[0] != self.size[1]:
+            yield Fault(("size",), "of a cylinder must be [diameter, diameter, length]")
+
+
+@dataclass(frozen=True)
 class Workspace:
     """Where approximate balance is judged: `samples` random poses inside the joint ranges."""
 
@@ -160,6 +201,7 @@ class Mechanism:
     capsules: tuple[Capsule, ...] = ()
     attachments: tuple[Attachment, ...] = ()
     goal: Goal = field(default=BY_DEFAULT, hash=False)
+    shapes: tuple[Shape, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", immutable(self.provenance))

@@ -29,6 +29,7 @@ LARGEST_COUNTS = {
     "masses": 500,
     "capsules": 500,
     "attachments": 500,
+    "shapes": 500,
 }
 """What a mechanism has at most: no robot comes near it, and the work grows with the cube of some."""
 
@@ -73,6 +74,8 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
         for end in ("p_a", "p_b"):
             yield from finite(("capsules", i, end), getattr(capsule, end))
         yield from at_least(("capsules", i, "radius"), capsule.radius, 0, "m")
+    for i, shape in enumerate(m.shapes):
+        yield from (replace(fault, path=("shapes", i, *fault.path)) for fault in shape.faults())
     for i, joint in enumerate(m.joints):
         for name in ("xyz", "rpy", "axis"):
             yield from finite(("joints", i, name), getattr(joint, name))
@@ -85,7 +88,7 @@ def _numbers(m: Mechanism) -> Iterator[Fault]:
 
 
 def _names(m: Mechanism) -> Iterator[Fault]:
-    sections = ("bodies", "joints", "springs", "masses", "capsules")
+    sections = ("bodies", "joints", "springs", "masses", "capsules", "shapes")
     for kind, items in ((section, getattr(m, section)) for section in sections):
         seen: dict[str, int] = {}
         for i, item in enumerate(items):
@@ -129,6 +132,8 @@ def _references(m: Mechanism) -> Iterator[Fault]:
         yield from known(("masses", i, "body"), mass.body, "body", bodies)
     for i, capsule in enumerate(m.capsules):
         yield from known(("capsules", i, "body"), capsule.body, "body", bodies)
+    for i, shape in enumerate(m.shapes):
+        yield from known(("shapes", i, "body"), shape.body, "body", bodies)
 
 
 def _joints(m: Mechanism) -> Iterator[Fault]:

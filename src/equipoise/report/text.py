@@ -15,6 +15,7 @@ from ..energy.exactness import EXACT
 from ..energy.spring_use import Reached
 from ..model.mechanism import Mechanism
 from ..model.units import SI_UNITS
+from .clearance import NOT_JUDGED
 from .numbers import energies, percent, pose, torque
 from .verdict import basis, verdict
 from .weights import weight_lines
@@ -170,13 +171,18 @@ def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
             f"{percent(found.plain.relative)} with it, {percent(found.balance.relative)} optimised "
             f"({found.gain:.3g} times smaller)"
         )
-    if found.room is not None:
+    if found.room is not None and not found.room[1].links:
+        yield Text(NOT_JUDGED, style="bold yellow")
+    if found.moved and found.room is not None:
         before, after = (f"{1e3 * room.least:.4g} mm" for room in found.room)
         yield Text(
             f"  clearance: least distance {before} before and {after} now, peak residual "
             f"{percent(found.plain.relative)} of the unbalanced peak before and {percent(found.balance.relative)} now"
         )
-    for row in found.to_dict()["springs"]:
+    elif found.room is not None and found.room[1].gaps:
+        least = 1e3 * found.room[1].least
+        yield Text(f"  clearance: least distance {least:.4g} mm; that is enough, and nothing was moved")
+    for row in found.to_dict()["springs"] if found.moved else ():
         (k, new_k), (force, new_force) = row["stiffness"], row["max_force"]
         yield Text(
             f"  {row['name']}: {k:.5g} -> {new_k:.5g} N/m, largest force {force:.4g} -> {new_force:.4g} N, "

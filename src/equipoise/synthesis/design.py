@@ -183,6 +183,8 @@ class Design(Shown):
         samples = found.balance.certificate.samples
         given = {**self.free_parameters, "free_length": dict(found.free_length)}
         given |= {name: getattr(asked, name) for name in options if name != "regions"}  # it has them
+        if found.mechanism.springs == self.mechanism.springs:  # they were as they should be
+            return replace(self, free_parameters=given, ordinary=found).with_provenance()
         return replace(
             self, mechanism=found.mechanism, objective="rms", residual=residual, unbalanced=unbalanced, bound=None,
             joints=None, averaged=False, samples=samples, loads=(), goal=BY_DEFAULT, free_parameters=given,

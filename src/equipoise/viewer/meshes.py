@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..io import files
+from ..io.mesh_files import mesh_file
 from ..io.xmltree import Document, XmlElement
 from ..model.arrays import Array, frozen
 from ..model.rotation import from_rpy
-
-PACKAGE = "package://"
 
 
 @frozen
@@ -29,7 +28,7 @@ class PlacedMesh:
 def pictures(path: str | os.PathLike[str]) -> list[PlacedMesh]:
     """The visual meshes of a URDF; none for other files, and none for what is missing or cannot be read.
 
-    A name ``package://NAME/REST`` is looked for as NAME/REST and as REST beside the file and in the folders above it.
+    Names are looked up as `mesh_file` does.
     """
     if Path(path).suffix.lower() != ".urdf":
         return []
@@ -49,7 +48,7 @@ def pictures(path: str | os.PathLike[str]) -> list[PlacedMesh]:
 
 def _mesh(urdf: Path, shape: XmlElement) -> Any:
     name = shape.attributes.get("filename", "")
-    file = _found(urdf.parent.resolve(), name)
+    file = mesh_file(urdf.parent, name)
     if file is None:
         return None
     import trimesh
@@ -60,15 +59,6 @@ def _mesh(urdf: Path, shape: XmlElement) -> Any:
         return None
     mesh.apply_scale(_three(shape, "scale", 1.0))
     return mesh
-
-
-def _found(folder: Path, name: str) -> Path | None:
-    if name.startswith(PACKAGE):
-        whole = name.removeprefix(PACKAGE)
-        places = [above / part for above in (folder, *folder.parents) for part in (whole, whole.partition("/")[2])]
-    else:
-        places = [folder / name.removeprefix("file://")]
-    return next((place for place in places if place.is_file()), None)
 
 
 def _three(element: XmlElement | None, key: str, default: float = 0.0) -> Array:

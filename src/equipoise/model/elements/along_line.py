@@ -83,6 +83,18 @@ class AlongLine(Element):
             x_a, x_b = (poses.point(tree.index[body], np.array(p)) for body, p in (before, behind))
             yield pulley, before, behind, pulley.wrap(tree, poses, x_a, x_b)
 
+    def touches(self, tree: Tree, poses: Poses) -> dict[str, tuple[Array, Array]]:
+        """Of each pulley by its mark, where the cable meets it and leaves it, (N, 3) each in the world [m].
+
+        Where it does not touch, these are its next points behind and before it.
+        """
+        found = {}
+        for (mark, _), (_, *ends, wrap) in zip(self.wheels, self._wraps(tree, poses), strict=True):
+            x_a, x_b = (poses.point(tree.index[body], np.array(p)) for body, p in ends)
+            a, b = x_a - wrap.free_a[:, None] * wrap.pull_a, x_b - wrap.free_b[:, None] * wrap.pull_b
+            found[mark] = a, b
+        return found
+
     def routing(self, tree: Tree, poses: Poses) -> list[tuple[State, Array]]:
         """What is to be reported of its pulleys: a state, and the angle (N,) [rad] that it is about."""
         found = []

@@ -113,6 +113,7 @@ class Wrap:
         angle: (N,) of the arc that it lies on [rad]; 0 where it does not touch.
         fleet: (N,) angle between the cable and the plane of the pulley that it lies on [rad], else 0.
         pull_a, pull_b: (N, 3) change of the length per motion of either end, in the world.
+        free_a, free_b: (N,) [m] from either end to where it touches; to the other end where it does not.
     """
 
     length: Array
@@ -120,6 +121,8 @@ class Wrap:
     fleet: Array
     pull_a: Array
     pull_b: Array
+    free_a: Array
+    free_b: Array
 
 
 def _wrapped(a: Array, b: Array, side: Array, r: float, R: Array) -> Wrap:
@@ -144,7 +147,8 @@ def _wrapped(a: Array, b: Array, side: Array, r: float, R: Array) -> Wrap:
     for u, size, sign in zip(ends, reach, (-1.0, 1.0), strict=True):
         own = np.concatenate([(P / np.maximum(size, TOUCH))[:, None] * u, sign * rise[:, None]], axis=1)
         pulls.append(np.einsum("nij,ni->nj", R, own / length[:, None]))
-    return Wrap(length, angle, np.where(on[:, 0], np.arctan2(np.abs(rise), P), 0.0), *pulls)
+    free = [size * length / np.maximum(P, TOUCH) for size in reach]
+    return Wrap(length, angle, np.where(on[:, 0], np.arctan2(np.abs(rise), P), 0.0), *pulls, *free)
 
 
 def _turned(p: Array, angle: Array) -> Array:

@@ -57,6 +57,11 @@ class Ordinary:
     def mechanism(self) -> Mechanism:
         return self.balance.mechanism
 
+    @property
+    def moved(self) -> bool:
+        """Whether it is another design at all: where there was room enough, it is not."""
+        return self.mechanism.springs != self.ideal.mechanism.springs
+
     @cached_property
     def gain(self) -> float:
         """How many times smaller the peak residual has become."""
@@ -149,12 +154,17 @@ def ordinary(mechanism: Source, options: OrdinaryOptions) -> Ordinary:
     if clearance is None:
         return Ordinary(check(mechanism), check(plain), check(fitted(None)), lengths)
     before, narrow = judge_room(mechanism), q
-    least = -np.inf
-    for _ in range(ROOM_ROUNDS):
+    made, after, least = mechanism, before, -np.inf
+    if options.free_length is not None:
+        made = fitted(None)
+        after = judge_room(made)
+    for more in range(ROOM_ROUNDS + 1):
+        if after.least >= clearance:  # what is satisfied changes nothing
+            return Ordinary(check(mechanism), check(plain), check(made), lengths, (before, after))
+        if more == ROOM_ROUNDS:
+            break
         made = fitted(ClearanceConstraint(mechanism, narrow, clearance))
         after = judge_room(made)
-        if after.least >= clearance:
-            return Ordinary(check(mechanism), check(plain), check(made), lengths, (before, after))
         least = max(least, after.least)
         close = [gap.configuration for gap in after.gaps if gap.distance < clearance]
         narrow = np.concatenate([narrow, *[np.repeat(at[None], WEIGHT, axis=0) for at in close]])
