@@ -2,7 +2,7 @@
 
 full: three zero-free-length springs per leg, exact (section 5). Links 2 and 2' of a parallelogram carry a frame (12)
 that stays upright and lends each leg's link 3 the guide of `rocker`. Spring 10 balances the rods, link 5 and a third of
-the platform, spring 11 the guide, and spring 7 all that hangs on link 2.
+the platform, spring 11 the guide, and spring 7 link 2 with everything that hangs on it.
 
 axis: one spring 7 per leg (section 6, Eqs. 14-15), best where the platform moves on the vertical axis, and exact there
 if AB = CD and the axes of E are below those of A. optimum: the same springs, chosen over a stated workspace instead.
