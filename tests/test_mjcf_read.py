@@ -19,7 +19,6 @@ from random_mechanisms import random_mechanism, random_poses
 from zoo import ZOO, exact_pendulum
 
 import equipoise as eq
-from equipoise.cli.export import assembled
 from equipoise.energy.evaluate import Potential
 from equipoise.io import mjcf
 from equipoise.kinematics import Tree
@@ -27,6 +26,7 @@ from equipoise.kinematics.linkage import Linkage
 from equipoise.kinematics.sampling import sample
 from equipoise.model.errors import EquipoiseWarning, InputError, UnsupportedError
 from equipoise.model.mechanism import Capsule
+from equipoise.report.export import assembled
 
 EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 

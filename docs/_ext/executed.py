@@ -128,6 +128,7 @@ class Element(Executed):
         curve = str(Path(__file__).with_name("force_curve.py"))
         self.execute([sys.executable, curve, file.name, f"{name}-force.svg"])
         said = self.execute(["equipoise", "check", file.name], 1).partition("worst pose:")[2].partition("\n")[2]
+        said = said.partition("next:")[0]
         return [
             nodes.literal_block(lines, lines, language="yaml"),
             *self.picture(f"{name}.svg", f"{name} on an arm"),

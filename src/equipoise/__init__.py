@@ -1,16 +1,19 @@
 """equipoise designs the springs that make a robot weightless, and proves it.
 
-The names below are the whole public interface::
+Every command of the command line is a function of the same name here, and its result prints as the command does::
 
     import equipoise as eq
 
-    design = eq.design(eq.load("ur5.urdf"), span=3)
-    print(design.balance.exact, design.balance.residual.max)
+    design = eq.design("ur5.urdf", span=3)
+    print(design)
+    print(eq.hardware(design.mechanism))
 """
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from ._version import __version__
@@ -18,12 +21,27 @@ from .model import notebook
 
 if TYPE_CHECKING:
     from .balance import Balance, check
+    from .clearance import clearance
+    from .hardware import bill as hardware
+    from .hardware import choose as stock
     from .io import load, save
     from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
+    from .model.errors import EquipoiseError, InfeasibleError, InputError, UnsupportedError
     from .model.goal import Count, Goal, Gravity, Loads, Tool
     from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+    from .model.payload import Payload
     from .proof.certificate import Certified, certify, verify
+    from .report.export import export
+    from .report.figure import plot
+    from .report.page.make import write as report
+    from .reproduce import reproduce
+    from .robust import adjust, sweep, tolerance
+    from .simulate import play
+    from .simulate import release as simulate
     from .synthesis import Design, Load, Problem, Region, design, solve
+    from .synthesis import reasons as methods
+    from .synthesis.planar.layouts import search as layouts
+    from .viewer.server import Viewer as view
 
 __all__ = [
     "Balance",
@@ -32,9 +50,12 @@ __all__ = [
     "Count",
     "Coupling",
     "Design",
+    "EquipoiseError",
     "Goal",
     "Gravity",
     "Guide",
+    "InfeasibleError",
+    "InputError",
     "Joint",
     "JointElement",
     "LineElement",
@@ -42,6 +63,7 @@ __all__ = [
     "Loads",
     "Loop",
     "Mechanism",
+    "Payload",
     "PointMass",
     "Problem",
     "Pulley",
@@ -49,36 +71,76 @@ __all__ = [
     "Spring",
     "Tool",
     "TorsionSpring",
+    "UnsupportedError",
     "Workspace",
     "__version__",
+    "adjust",
     "certify",
     "check",
+    "clearance",
     "design",
+    "export",
+    "hardware",
     "laws",
+    "layouts",
     "load",
+    "methods",
+    "play",
+    "plot",
+    "report",
+    "reproduce",
     "save",
+    "simulate",
     "solve",
+    "stock",
+    "sweep",
+    "tolerance",
     "verify",
+    "view",
 ]
 
-_PLACES = {
+_PLACES: dict[str, tuple[str, ...]] = {
     "balance": ("Balance", "check"),
+    "clearance": ("clearance",),
+    "hardware": ("bill as hardware", "choose as stock"),
     "io": ("load", "save"),
     "model.elements": ("Guide", "JointElement", "LineElement", "Pulley", "Spring", "TorsionSpring", "laws"),
+    "model.errors": ("EquipoiseError", "InfeasibleError", "InputError", "UnsupportedError"),
     "model.goal": ("Count", "Goal", "Gravity", "Loads", "Tool"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
+    "model.payload": ("Payload",),
     "proof.certificate": ("Certified", "certify", "verify"),
-    "synthesis": ("Design", "Load", "Problem", "Region", "design", "solve"),
+    "report.export": ("export",),
+    "report.figure": ("plot",),
+    "report.page.make": ("write as report",),
+    "reproduce": ("reproduce",),
+    "robust": ("adjust", "sweep", "tolerance"),
+    "simulate": ("play", "release as simulate"),
+    "synthesis": ("Design", "Load", "Problem", "Region", "design", "reasons as methods", "solve"),
+    "synthesis.planar.layouts": ("search as layouts",),
+    "viewer.server": ("Viewer as view",),
 }
-_MODULE = {name: module for module, names in _PLACES.items() for name in names}
+_FROM = {name.split(" as ")[-1]: (module, name.split(" as ")[0]) for module, names in _PLACES.items() for name in names}
 
 notebook.supplied_by(lambda: import_module(f"{__name__}.report.notebook"))
 
 
+class _Front(ModuleType):
+    """This module. A package of the same name as a command, once imported, does not take the command's place."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _FROM and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Front
+
+
 def __getattr__(name: str) -> Any:
     # imported on first use, so that `import equipoise` waits for nothing
-    if name in _MODULE:
-        found = globals()[name] = getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
+    if name in _FROM:
+        module, own = _FROM[name]
+        found = globals()[name] = getattr(import_module(f"{__name__}.{module}"), own)
         return found
     raise AttributeError(f"module 'equipoise' has no attribute '{name}'")
 

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from ..model.errors import InputError
+from ..model.errors import Fault, InputError, nearest
 from . import terminal
 from .app import File, app
-
-if TYPE_CHECKING:
-    from ..model.mechanism import Mechanism
-
-DRAWINGS = {"svg": "equipoise.report.schematic", "dxf": "equipoise.report.attachments"}
 
 
 @app.command()
@@ -32,35 +26,18 @@ def export(
     Example: [bold]equipoise export ur5-balanced.yaml --to mjcf -o ur5.xml[/bold]
     Example: [bold]equipoise export ur5-balanced.yaml --to svg -o ur5.svg[/bold]
     """
-    from importlib import import_module
-
-    from ..io import WRITERS
     from ..io.files import check_writable, write_text
-    from ..model.errors import Fault, nearest
+    from ..report.export import FORMATS
+    from ..report.export import export as written
 
-    modules = {name: f"equipoise.io.{name}" for name in WRITERS} | DRAWINGS
-    if to not in modules:
-        raise InputError(Fault(("--to",), f"unknown format {nearest(to, modules)}", tuple(modules)))
+    if to not in FORMATS:
+        raise InputError(Fault(("--to",), f"unknown format {nearest(to, FORMATS)}", tuple(FORMATS)))
     if output is not None:
         check_writable(output)
     with terminal.shown_warnings():
-        mechanism = terminal.load(file, weightless=True)
-        write = import_module(modules[to]).to_text
-        text = write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
+        text = written(terminal.load(file, weightless=True), to)
     if output is None:
         typer.echo(text, nl=False)
     else:
         write_text(output, text)
         terminal.say(f"wrote {output}")
-
-
-def assembled(mechanism: Mechanism) -> tuple[Mechanism, dict[str, float] | None]:
-    """With the coordinates that steer its loops, and a pose in which they close."""
-    from ..kinematics import Tree
-    from ..kinematics.linkage import Linkage
-
-    tree = Tree.of(mechanism)
-    if not isinstance(tree, Linkage):
-        return mechanism, None
-    pose: dict[str, float] = dict(zip(tree.open.coordinates, tree.branch.assembled.tolist(), strict=True))
-    return replace(mechanism, independent=tree.coordinates), pose

@@ -1,4 +1,4 @@
-"""Values that show themselves in notebooks, as `report` says, which the core never imports."""
+"""Values that show themselves, printed and in notebooks, as `report` says, which the core never imports."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SUPPLIERS: list[Callable[[], object]] = []
 
 
 def register(kind: type, **drawers: Drawer) -> None:
-    """Say how values of a class are drawn, as `html` or `svg`."""
+    """Say how values of a class are drawn: as `text`, `html` or `svg`."""
     _DRAWERS[kind] = drawers
 
 
@@ -22,7 +22,10 @@ def supplied_by(load: Callable[[], object]) -> None:
 
 
 class Shown:
-    """A value that a notebook draws where its class is registered, and prints where it is not."""
+    """A value that prints as the command line shows it, and that a notebook draws, where its class is registered."""
+
+    def __str__(self) -> str:
+        return _drawn("text", self) or repr(self)
 
     def _repr_html_(self) -> str | None:
         return _drawn("html", self)

@@ -21,6 +21,7 @@ from ..kinematics.sampling import whole_turns
 from ..model.arrays import vec3
 from ..model.errors import EquipoiseError, NoFourierForm
 from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 from ..model.units import Amount, quantity
 from ..synthesis.convex.spring_block import SpringBlock
 from ..synthesis.fewest import Fewest, fewest
@@ -43,7 +44,7 @@ class Refused(EquipoiseError):
 
 
 @dataclass(frozen=True)
-class Certified:
+class Certified(Shown):
     """A certificate.
 
     Attributes:

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from ..model.mechanism import Mechanism
 from . import arm, loads, style
 from .poses import choose
 from .skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # without what changes from one run or machine to the next
 METADATA: dict[str, dict[str, None]] = {
@@ -53,13 +56,22 @@ def save_figure(
     mechanism = loaded(mechanism)
     judged = check(mechanism) if balance is None else balance
 
-    def draw(figure: Any) -> None:
-        _heading(figure, mechanism, judged, title)
-        _poses(figure, mechanism, judged)
-        _legend(figure, mechanism)
-        _torque(figure, judged)
+    render(path, SIZE, lambda figure: _draw(figure, mechanism, judged, title))
 
-    render(path, SIZE, draw)
+
+def plot(mechanism: Source, *, balance: Balance | None = None, title: str | None = None) -> Figure:
+    """The picture that `save_figure` writes, as a matplotlib figure.
+
+    Raises:
+        InputError: matplotlib is not installed, or loops that cannot be closed.
+    """
+    check_installed()
+    import matplotlib.style
+
+    mechanism = loaded(mechanism)
+    judged = check(mechanism) if balance is None else balance
+    with matplotlib.style.context(["default", style.RC]):
+        return _filled(SIZE, lambda figure: _draw(figure, mechanism, judged, title))
 
 
 def check_drawable(path: str | os.PathLike[str]) -> None:
@@ -71,9 +83,18 @@ def check_drawable(path: str | os.PathLike[str]) -> None:
     if Path(path).suffix.lower() not in METADATA:
         found = f"a figure cannot be written as '{Path(path).suffix}'"
         raise InputError(Fault((), found, tuple(METADATA), file=os.fspath(path)))
+    check_installed()
+    check_writable(path)
+
+
+def check_installed() -> None:
+    """Whether figures can be drawn at all.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
     if find_spec("matplotlib") is None:
         raise InputError("figures need matplotlib: pip install 'equipoise[report]'")
-    check_writable(path)
 
 
 def render(path: str | os.PathLike[str], size: tuple[float, float], draw: Callable[[Any], None]) -> None:
@@ -89,15 +110,27 @@ def render(path: str | os.PathLike[str], size: tuple[float, float], draw: Callab
 def picture(suffix: str, size: tuple[float, float], draw: Callable[[Any], None]) -> bytes:
     """The same as the content of a file with the suffix .svg, .png or .pdf."""
     import matplotlib.style
-    from matplotlib.figure import Figure
 
     buffer = io.BytesIO()
     with matplotlib.style.context(["default", style.RC]), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph")  # a name in a script that the font lacks is no error
-        figure = Figure(figsize=size, dpi=DPI, facecolor="white")
-        draw(figure)
-        figure.savefig(buffer, format=suffix[1:], dpi=DPI, metadata=METADATA[suffix])
+        _filled(size, draw).savefig(buffer, format=suffix[1:], dpi=DPI, metadata=METADATA[suffix])
     return buffer.getvalue()
+
+
+def _filled(size: tuple[float, float], draw: Callable[[Any], None]) -> Figure:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, dpi=DPI, facecolor="white")
+    draw(figure)
+    return figure
+
+
+def _draw(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:
+    _heading(figure, mechanism, balance, title)
+    _poses(figure, mechanism, balance)
+    _legend(figure, mechanism)
+    _torque(figure, balance)
 
 
 def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | None) -> None:

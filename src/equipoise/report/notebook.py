@@ -1,19 +1,33 @@
-"""Designs and verdicts as a notebook shows them: the verdict, the schematic, springs and torques. Needs no extra."""
+"""How results show themselves: printed as on the command line; in a notebook with schematic and tables."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from html import escape
+from io import StringIO
+from typing import Any
 from zlib import crc32
 
+from rich.console import Console, RenderableType
+
 from ..balance import Balance
+from ..hardware import Bill
 from ..model.notebook import register
+from ..proof.certificate import Certified
+from ..reproduce import Reproduction
+from ..robust import Adjustment, Sweep, Tolerance
+from ..simulate import Playback, Release
 from ..synthesis import Design
+from ..synthesis.planar.layouts import LayoutSearch
+from . import bill, certificate, layouts, published, robust, simulation, text
 from .numbers import percent
 from .page import design as sections
 from .page.html import block
 from .page.pictures import scheme
 from .schematic import schematic
 from .verdict import verdict
+
+COLUMNS = 120  # of a result that is printed
 
 
 def balance_html(value: Balance) -> str:
@@ -43,5 +57,26 @@ def svg(value: Balance | Design) -> str:
     return schematic(value.mechanism).svg()
 
 
-register(Balance, html=balance_html, svg=svg)
-register(Design, html=design_html, svg=svg)
+def printed(lines: Callable[[Any], Iterable[RenderableType]]) -> Callable[[Any], str]:
+    """What the command line prints of a value, without colours."""
+
+    def draw(value: Any) -> str:
+        page = Console(file=StringIO(), width=COLUMNS, highlight=False, color_system=None)
+        for line in lines(value):
+            page.print(line, markup=False)
+        return "\n".join(line.rstrip() for line in page.file.getvalue().rstrip().splitlines())  # type: ignore[attr-defined]
+
+    return draw
+
+
+register(Balance, text=printed(text.balance_lines), html=balance_html, svg=svg)
+register(Design, text=printed(text.design_lines), html=design_html, svg=svg)
+register(Adjustment, text=printed(robust.adjustment_lines))
+register(Bill, text=printed(bill.bill_lines))
+register(Certified, text=printed(certificate.certificate_lines))
+register(LayoutSearch, text=printed(layouts.layout_lines))
+register(Playback, text=printed(simulation.playback_lines))
+register(Release, text=printed(simulation.release_lines))
+register(Reproduction, text=printed(published.reproduction_lines))
+register(Sweep, text=printed(lambda found: [robust.sweep_table(found)]))
+register(Tolerance, text=printed(robust.tolerance_lines))

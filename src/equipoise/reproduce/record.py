@@ -14,6 +14,7 @@ from ..balance import Balance
 from ..model.arrays import Array, frozen
 from ..model.errors import EquipoiseError, InputError
 from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 
 Verdict = Literal["agrees", "golden", "differs", "unprinted", "erratum", "refuted", "FAILS"]
 Against = Literal["differs", "unprinted", "erratum", "refuted"]
@@ -230,7 +231,7 @@ Figure = Plot | Map | Picture
 
 
 @dataclass(frozen=True)
-class Reproduction:
+class Reproduction(Shown):
     """All of a paper: its numbers and pictures."""
 
     paper: str

@@ -23,6 +23,7 @@ from ..model.arrays import Array, frozen
 from ..model.elements import lines
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 from ..model.payload import Payload
 from ..model.progress import Progress, silent
 from ..model.units import Amount, share
@@ -39,7 +40,7 @@ EVERY_ATTACHMENT = Scatter(stiffness=0, attachment=1, mass=0, length=0)
 
 
 @frozen
-class Adjustment:
+class Adjustment(Shown):
     """How a design follows a range of payloads, and the fixed design that is best over it.
 
     Attributes:

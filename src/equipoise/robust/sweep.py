@@ -9,12 +9,13 @@ import numpy as np
 
 from ..balance import Balance, check
 from ..io import Source, loaded
+from ..model.notebook import Shown
 from ..model.payload import Payload
 from ..model.validate import whole_number
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Sweep(Shown):
     """The verdict at each payload [kg]."""
 
     payloads: tuple[float, ...]

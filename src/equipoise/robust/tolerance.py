@@ -14,6 +14,7 @@ from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 from ..model.progress import Progress, silent
 from ..model.units import Amount, quantity
 from ..model.validate import MAX_NUMBERS, MAX_SAMPLES, whole_number
@@ -27,7 +28,7 @@ PERCENTILES = (5, 50, 95, 99)
 
 
 @frozen
-class Tolerance:
+class Tolerance(Shown):
     """What scatter does to a design.
 
     Attributes:

@@ -10,13 +10,14 @@ from ..io import Source, loaded
 from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import InputError
+from ..model.notebook import Shown
 from ..model.units import Amount, quantity
 from .engine import Engine
 from .quiet import quiet
 
 
 @frozen
-class Playback:
+class Playback(Shown):
     """A motion, and what it takes.
 
     Attributes:

@@ -18,6 +18,7 @@ from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError
 from ..model.mechanism import Mechanism
+from ..model.notebook import Shown
 from ..model.progress import Progress, silent
 from ..model.units import Amount, quantity
 from ..model.validate import whole_number
@@ -53,7 +54,7 @@ class Drift:
 
 
 @frozen
-class Release:
+class Release(Shown):
     """The run, and its positive control.
 
     Attributes:

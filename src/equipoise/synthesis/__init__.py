@@ -4,7 +4,19 @@ from .convex.method import solve
 from .design import Design
 from .load import Load
 from .method import Method, Parameter
-from .methods import METHODS, by_name, design
+from .methods import METHODS, by_name, design, reasons
 from .problem import Problem, Region
 
-__all__ = ["METHODS", "Design", "Load", "Method", "Parameter", "Problem", "Region", "by_name", "design", "solve"]
+__all__ = [
+    "METHODS",
+    "Design",
+    "Load",
+    "Method",
+    "Parameter",
+    "Problem",
+    "Region",
+    "by_name",
+    "design",
+    "reasons",
+    "solve",
+]

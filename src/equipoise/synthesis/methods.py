@@ -77,6 +77,12 @@ def _typed(
     return lambda function: cast("_ByMethod[C, B, P, N, S, D, K]", function)
 
 
+def reasons(mechanism: Source) -> dict[str, tuple[str, ...]]:
+    """Every method, and why it does not apply to a mechanism: nothing where it does."""
+    mechanism = loaded(mechanism)
+    return {name: tuple(method.applies(mechanism)) for name, method in METHODS.items()}
+
+
 def by_name(mechanism: Source, method: str, **options: Any) -> Design:
     """`design` by a method whose name is not known before the program runs."""
     if method not in METHODS:

@@ -17,6 +17,7 @@ from ...io import Source
 from ...model.elements import Spring, lines
 from ...model.errors import Fault, InputError, nearest
 from ...model.mechanism import Mechanism
+from ...model.notebook import Shown
 from ...model.progress import Progress, silent
 from ..sizing.compression import CompressionSpring
 from ..sizing.extension import ExtensionSpring
@@ -62,7 +63,7 @@ class BillItem:
 
 
 @dataclass(frozen=True)
-class Bill:
+class Bill(Shown):
     """The bill of materials.
 
     Attributes:

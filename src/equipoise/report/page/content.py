@@ -101,3 +101,7 @@ class Report:
     good: bool
     sections: tuple[Section, ...]
     data: dict[str, Any]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of ``equipoise report --json``."""
+        return self.data

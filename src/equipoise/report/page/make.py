@@ -79,6 +79,26 @@ def make(
     )
 
 
+def write(
+    balance: Balance | Source,
+    path: str | os.PathLike[str],
+    *,
+    extras: Iterable[str] = EXTRAS,
+    seed: int = 0,
+    radius: Amount | None = None,
+    limits: Limits | None = None,
+) -> Report:
+    """Write the report of a mechanism, its file or its verdict, as .html or .pdf; see `make`.
+
+    Raises:
+        InputError: as `check_report` and `make`.
+    """
+    check_report(path)
+    made = make(balance, extras=extras, seed=seed, radius=radius, limits=limits)
+    save_report(made, path)
+    return made
+
+
 def check_report(path: str | os.PathLike[str]) -> None:
     """Whether a report could be written there, asked before long work.
 

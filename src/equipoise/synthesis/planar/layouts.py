@@ -25,6 +25,7 @@ import numpy as np
 from ...balance import Balance, check
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Body, Joint, Mechanism
+from ...model.notebook import Shown
 from ...model.progress import Progress
 from ...model.validate import whole_number
 from .arm import PlanarArm
@@ -98,7 +99,7 @@ class Feasible:
 
 
 @dataclass(frozen=True)
-class LayoutSearch:
+class LayoutSearch(Shown):
     """What a search found.
 
     Attributes:
@@ -128,6 +129,13 @@ class LayoutSearch:
             for layout in layouts:
                 yield Excluded(layout, tuple(failures(layout, self.n)))
         yield from self.proved
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "feasible": [one.to_dict() for one in self.feasible],
+            "excluded": [one.to_dict() for one in self.excluded],
+        }
 
 
 def search(

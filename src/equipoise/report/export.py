@@ -1,0 +1,38 @@
+"""A mechanism in another format, or as a drawing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib import import_module
+
+from ..io import WRITERS, Source, loaded
+from ..kinematics import Linkage, Tree
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import Mechanism
+
+FORMATS = {name: f"equipoise.io.{name}" for name in WRITERS} | {
+    "svg": "equipoise.report.schematic",
+    "dxf": "equipoise.report.attachments",
+}
+"""Name -> the module whose `to_text` writes it."""
+
+
+def export(mechanism: Source, to: str) -> str:
+    """A mechanism as text: yaml, urdf, mjcf; svg is a schematic, dxf the attachment points.
+
+    Raises:
+        InputError: another format, or one that cannot hold the mechanism.
+    """
+    if to not in FORMATS:
+        raise InputError(Fault(("--to",), f"unknown format {nearest(to, FORMATS)}", tuple(FORMATS)))
+    mechanism, write = loaded(mechanism), import_module(FORMATS[to]).to_text
+    return write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
+
+
+def assembled(mechanism: Mechanism) -> tuple[Mechanism, dict[str, float] | None]:
+    """With the coordinates that steer its loops, and a pose in which they close."""
+    tree = Tree.of(mechanism)
+    if not isinstance(tree, Linkage):
+        return mechanism, None
+    pose: dict[str, float] = dict(zip(tree.open.coordinates, tree.branch.assembled.tolist(), strict=True))
+    return replace(mechanism, independent=tree.coordinates), pose
