@@ -132,10 +132,7 @@ class LayoutSearch(Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {
-            "feasible": [one.to_dict() for one in self.feasible],
-            "excluded": [one.to_dict() for one in self.excluded],
-        }
+        return {name: [one.to_dict() for one in getattr(self, name)] for name in ("feasible", "excluded")}
 
 
 def search(
