@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from functools import cache
 from math import pi, radians
+from pathlib import Path
 from typing import Any
 
 import cam_wrapping
@@ -12,10 +16,15 @@ from campaign import campaign
 from mpmath import acos, diff, mp, mpf, sqrt
 
 import equipoise as eq
-from equipoise.model.errors import InfeasibleError
+from equipoise.hardware.stock.made_up import made_up_catalogue
+from equipoise.io.mjcf import to_text
+from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.model.rotation import about
+from equipoise.simulate.release import release
 
 G = 9.81
+SLOW = pytest.mark.slow(reason="searches a list, or one that finds nothing")
+EXAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 
 
 def arm(low: float, high: float, *springs: Any, mass: float = 2.0, com: tuple[float, float, float] = (0.3, 0, 0),
@@ -109,6 +118,179 @@ def test_a_series_where_gravity_alone_is_there_and_the_balance_is_proved() -> No
     assert "cosine" in entry(design)
     assert entry(design)["made"]["share"] < 1e-4
     assert entry(design)["made"]["faults"] == []
+
+
+# in an engine, in a file, on a sheet
+
+
+def test_mujoco_keeps_the_energy_with_the_taut_cable_on_the_written_points() -> None:
+    mujoco = pytest.importorskip("mujoco")
+    mechanism = arm(radians(-50), radians(60), mass=1.2, com=(0.4, 0, 0.02))
+    cam = entry(eq.design(mechanism, "cam"))
+    body = replace(mechanism.bodies[0], inertia=(1e-3, 0.07, 0.07, 0, 0, 0))
+    model = mujoco.MjModel.from_xml_string(to_text(replace(mechanism, bodies=(body,))))
+    model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    model.opt.timestep = 2e-3
+    data = mujoco.MjData(model)
+
+    def pulled(q: float) -> tuple[float, float]:
+        own = cam_wrapping.cable(points(cam), tuple(cam["cable"]["point"]), q)
+        drawn = own.length - cam["cable"]["length"] + cam["cable"]["behind"]
+        _, force, energy = cam_wrapping.spring(cam["spring"], drawn)
+        return force * own.lever, energy
+
+    # at rest all over the range, the sum does not change
+    sums, weight = [], []
+    for q in np.radians(np.linspace(-50, 60, 45)):
+        data.qpos[0] = q
+        mujoco.mj_forward(model, data)
+        sums.append(data.energy[0] + pulled(q)[1])
+        weight.append(data.energy[0])
+    assert np.ptp(sums) < 0.005 * np.ptp(weight)
+    # pushed, it goes on through the range as on a table
+    data.qpos[0], data.qvel[0] = radians(-45), 1.0
+    mujoco.mj_forward(model, data)
+    speeds = []
+    while data.qpos[0] < radians(55) and data.time < 5:
+        data.qfrc_applied[0] = pulled(float(data.qpos[0]))[0]
+        mujoco.mj_step(model, data)
+        speeds.append(float(data.qvel[0]))
+    assert data.qpos[0] >= radians(55)
+    kinetic = data.energy[1]
+    assert abs(np.square(speeds[-1]) - 1) * kinetic < 0.005 * np.ptp(weight)
+    # the program's own way: the element's law in the engine, let go at rest
+    held = replace(eq.design(mechanism, "cam").mechanism, bodies=(body,))
+    assert release(held, poses=3, seconds=1.0, control=False).design.largest < 1e-4
+
+
+@SLOW
+def test_a_monitor_arm_gets_a_spring_of_a_list() -> None:
+    mechanism = eq.load(EXAMPLES / "monitor_arm.yaml")
+    design = eq.design(mechanism, "cam", joint="lift", stock=made_up_catalogue(600))
+    cam = entry(design)
+    assert cam["spring"]["part"].startswith("MADE-UP")
+    assert cam["made"]["faults"] == []
+    low, high = mechanism.joints[1].range or (0.0, 0.0)
+    angles = np.linspace(low, high, 41)
+    weight = 9.81 * (1.1 * 0.15 + 5 * 0.3) * np.cos(angles)  # as the file's first lines have it
+    assert np.abs(judged(cam, angles) + weight).max() < 0.01 * weight.max()
+
+
+def test_a_cam_is_written_read_and_drawn(tmp_path: Path, run: Any) -> None:
+    file, out, sheet = tmp_path / "arm.yaml", tmp_path / "cam.yaml", tmp_path / "cam.svg"
+    eq.save(arm(-0.9, 0.9), file)
+    more = ["--set", "cable=1mm", "--set", "friction=3%", "-o", out]
+    code, text, _ = run("design", file, "--method", "cam", "--joint", "elbow", *more)
+    assert code == 0
+    assert "is that of the energy within" in " ".join(text.split())
+    assert "friction of ±" in text
+    mechanism = eq.load(out)
+    made = mechanism.springs[0].law.made
+    assert made is not None
+    assert eq.check(mechanism).exact
+    assert run("export", out, "--to", "svg", "--cam", "elbow cam", "-o", sheet)[0] == 0
+    drawing = sheet.read_text(encoding="utf-8")
+    for words in (
+        "fixed point (",
+        "bottom of its groove",
+        "x, 0 deg",
+        "axis",
+        f"cable {1e3 * made.cable.length:.5g} from",
+    ):
+        assert words in drawing
+    dxf = pytest.importorskip("ezdxf")
+    assert run("export", out, "--to", "dxf", "--cam", "elbow cam", "-o", tmp_path / "cam.dxf")[0] == 0
+    lines = dxf.readfile(tmp_path / "cam.dxf").modelspace().query("LWPOLYLINE[layer=='thick']")
+    rim = np.array([(x, y) for x, y, *_ in max(lines, key=len)])
+    np.testing.assert_allclose(rim[0], rim[-1])
+    profile = 1e3 * np.array(made.profile)
+    np.testing.assert_allclose(np.diff(rim[: len(profile)], axis=0), np.diff(profile, axis=0), atol=1e-6)
+    code, _, err = run("export", out, "--to", "svg", "--cam", "elbw cam")
+    assert code == 2
+    assert "did you mean 'elbow cam'" in err
+    code, _, err = run("design", file, "--joint", "elbow")
+    assert code == 2
+    assert "is for --method cam" in err
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("spring: {kind: extension", "spring: {kind: extention"),
+        ("cable: {point: ", "cable: {pont: "),
+        ("profile:", "profil:"),
+        ("fixed_to: parent", "fixed_to: uncle"),
+    ],
+)
+def test_what_is_wrong_with_a_cam_is_said_at_its_place(tmp_path: Path, change: str, said: str) -> None:
+    file = tmp_path / "arm.yaml"
+    eq.save(_designed().mechanism, file)
+    text = file.read_text(encoding="utf-8")
+    assert change in text
+    file.write_text(text.replace(change, said, 1), encoding="utf-8")
+    with pytest.raises(InputError, match=r"did you mean|unknown|no body"):
+        eq.load(file)
+
+
+@cache
+def _designed() -> Any:
+    return eq.design(arm(-0.9, 0.9), "cam", fixed_to="parent")
+
+
+def test_a_profile_that_is_not_its_energy_is_told() -> None:
+    cam = _designed().mechanism.springs[0]
+    made = cam.law.made
+    bent = replace(made, profile=tuple((1.02 * x, 1.02 * y) for x, y in made.profile))
+    short = replace(made, cable=replace(made.cable, length=made.cable.length + 0.2))
+    for other, words in ((bent, "its torque differs by up to"), (short, "its spring goes slack")):
+        mechanism = _designed().mechanism.with_springs([cam.changed(made=other)])
+        found = eq.check(mechanism, samples=50).to_dict()["springs"][0]["made"]
+        assert any(words in fault for fault in found["faults"])
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"size": 0.012}, "least_radius"),
+        pytest.param({"preload": 0.7}, "least force, of the largest", marks=SLOW),
+        pytest.param({"hub": 0.12}, "the axis inside the profile by", marks=SLOW),
+    ],
+)
+def test_no_says_which_demand_fails_and_what_would_help(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(InfeasibleError, match=said) as caught:
+        eq.design(arm(-0.9, 0.9), "cam", **options)
+    assert "any one of these would help" in str(caught.value)
+    helps = str(caught.value).split("would help: ")[1]
+    (name,) = options
+    value = re.search(rf"a {name} of ([\d.]+) (mm|%)", helps)
+    assert value is not None
+    better = float(value[1]) / (1e3 if value[2] == "mm" else 100) * (1.02 if name == "size" else 0.98)
+    assert eq.design(arm(-0.9, 0.9), "cam", **{name: better}).residual < 1e-9
+
+
+@SLOW
+def test_two_sides_where_the_torque_changes_its_sign() -> None:
+    mechanism = arm(0.3, 2.6)
+    design = eq.design(mechanism, "cam", sides="two")
+    angles = np.linspace(0.3, 2.6, 31)
+    both = sum(judged(entry(design, i), angles) for i in (0, 1))
+    weight = 9.81 * 2.0 * 0.3 * np.cos(angles)
+    assert np.abs(both + weight).max() < 0.005 * np.abs(weight).max()
+
+
+def test_what_cannot_be() -> None:
+    for options, said in (
+        ({"joint": "elbw"}, "did you mean 'elbow'"),
+        ({"range": (0.5, 0.2)}, "the lower one first"),
+        ({"fixed": (0.0, 0.0)}, "not its axis"),
+        ({"spring": "rubber"}, "rubber"),
+    ):
+        with pytest.raises(InputError, match=said):
+            eq.design(arm(-0.9, 0.9), "cam", **options)
+    free = replace(arm(-0.9, 0.9), joints=(replace(arm(-0.9, 0.9).joints[0], range=None),))
+    with pytest.raises(InputError, match="a range of a turn or more"):
+        eq.design(free, "cam")
 
 
 # 200 random joints

@@ -16,6 +16,7 @@ from .app import File, app
 def export(
     file: File,
     to: Annotated[str, typer.Option("--to", help="yaml, urdf, mjcf, svg or dxf", show_default=False)],
+    cam: Annotated[str | None, typer.Option("--cam", help="svg or dxf: the profile of this cam, to cut")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="default: standard output")] = None,
 ) -> None:
     """Write a mechanism in another format, or as a drawing.
@@ -25,6 +26,7 @@ def export(
 
     Example: [bold]equipoise export ur5-balanced.yaml --to mjcf -o ur5.xml[/bold]
     Example: [bold]equipoise export ur5-balanced.yaml --to svg -o ur5.svg[/bold]
+    Example: [bold]equipoise export lamp.yaml --to dxf --cam "elbow cam" -o cam.dxf[/bold]
     """
     from ..io.files import check_writable, write_text
     from ..report.export import FORMATS
@@ -35,7 +37,7 @@ def export(
     if output is not None:
         check_writable(output)
     with terminal.shown_warnings():
-        text = written(terminal.load(file, weightless=True), to)
+        text = written(terminal.load(file, weightless=True), to, cam=cam)
     if output is None:
         typer.echo(text, nl=False)
     else:

@@ -180,9 +180,18 @@ def check_sheet(path: str | os.PathLike[str]) -> None:
     if suffix not in WRITERS:
         found = f"a drawing cannot be written as '{suffix}'"
         raise InputError(Fault((), found, tuple(WRITERS), file=os.fspath(path)))
+    check_extra(suffix)
+    check_writable(path)
+
+
+def check_extra(suffix: str) -> None:
+    """Whether what a kind of drawing needs is installed.
+
+    Raises:
+        InputError: it is not.
+    """
     if suffix == ".dxf" and find_spec("ezdxf") is None:
         raise InputError("DXF drawings need ezdxf: pip install 'equipoise[cad]'")
-    check_writable(path)
 
 
 def save_drawing(drawing: Drawing, path: str | os.PathLike[str]) -> None:

@@ -9,6 +9,7 @@ from ..io import WRITERS, Source, loaded
 from ..kinematics import Linkage, Tree
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
+from .cam import cam_text
 
 FORMATS = {name: f"equipoise.io.{name}" for name in WRITERS} | {
     "svg": "equipoise.report.schematic",
@@ -17,14 +18,19 @@ FORMATS = {name: f"equipoise.io.{name}" for name in WRITERS} | {
 """Name -> the module whose `to_text` writes it."""
 
 
-def export(mechanism: Source, to: str) -> str:
+def export(mechanism: Source, to: str, *, cam: str | None = None) -> str:
     """A mechanism as text: yaml, urdf, mjcf; svg is a schematic, dxf the attachment points.
 
+    Args:
+        cam: its name; then svg and dxf are its profile at full size, to cut.
+
     Raises:
-        InputError: another format, or one that cannot hold the mechanism.
+        InputError: another format, or one that cannot hold the mechanism; no such cam.
     """
     if to not in FORMATS:
         raise InputError(Fault(("--to",), f"unknown format {nearest(to, FORMATS)}", tuple(FORMATS)))
+    if cam is not None:
+        return cam_text(loaded(mechanism), cam, to)
     mechanism, write = loaded(mechanism), import_module(FORMATS[to]).to_text
     return write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
 

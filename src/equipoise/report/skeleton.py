@@ -10,6 +10,8 @@ import numpy as np
 
 from ..kinematics import Poses, Tree
 from ..model.arrays import Array
+from ..model.elements.cam_outline import Track
+from ..model.elements.element import End
 from ..model.elements.laws.law import Look
 from ..model.mechanism import Mechanism
 
@@ -25,6 +27,17 @@ class Point(NamedTuple):
     def at(self, poses: Poses) -> Array:
         """(N, 3) its place in the world."""
         return poses.point(self.body, self.p)
+
+
+class Moving(NamedTuple):
+    """A point that moves in a body with the angles of joints."""
+
+    tree: Tree
+    track: Track
+
+    def at(self, poses: Poses) -> Array:
+        """(N, 3) its place in the world."""
+        return self.track.at(self.tree, poses)
 
 
 class Bar(NamedTuple):
@@ -51,7 +64,7 @@ class Skeleton:
     brackets: tuple[Bar, ...]
     joints: tuple[Point, ...]
     base: tuple[Point, ...]
-    springs: tuple[tuple[Point, ...], ...]
+    springs: tuple[tuple[Point | Moving, ...], ...]
     looks: tuple[Look, ...]
     masses: tuple[Point, ...]
     fixed: frozenset[int]
@@ -68,10 +81,7 @@ class Skeleton:
         for link in tree.links:
             if link.joint.type == "fixed" and link.parent in fixed:
                 fixed.add(link.body)
-        springs = tuple(
-            tuple(Point(tree.index[body], np.array(p)) for body, p in spring.outline(tree))
-            for spring in mechanism.springs
-        )
+        springs = tuple(tuple(_point(tree, end) for end in spring.outline(tree)) for spring in mechanism.springs)
         masses = tuple(Point(tree.index[m.body], np.array(m.position)) for m in mechanism.masses)
         bars = _bars(tree, masses)
         met = _met(tree)
@@ -113,6 +123,10 @@ class Skeleton:
         if not self.springs:
             return np.zeros((len(poses.p), 0, 2, 3))
         return np.stack([np.stack([a.at(poses), b.at(poses)], axis=1) for a, *_, b in self.springs], axis=1)
+
+
+def _point(tree: Tree, end: End | Track) -> Point | Moving:
+    return Moving(tree, end) if isinstance(end, Track) else Point(tree.index[end[0]], np.array(end[1]))
 
 
 def _met(tree: Tree) -> tuple[Point, ...]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ...energy.span.nodes import Nodes
     from ...kinematics import Poses, Tree, Velocities
     from ..mechanism import Mechanism
+    from .cam_outline import Track
     from .guides import Pulley
 
 Vec3 = tuple[float, float, float]
@@ -175,8 +176,8 @@ class Element(ABC):
         """The points where it is fixed to bodies; none where a joint carries it."""
         return ()
 
-    def outline(self, tree: Tree) -> tuple[End, ...]:
-        """A line to draw it along, as points of bodies."""
+    def outline(self, tree: Tree) -> tuple[End | Track, ...]:
+        """A line to draw it along, as points of bodies, fixed or moving in them."""
         return self.ends
 
     @property

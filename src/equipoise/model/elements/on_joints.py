@@ -11,7 +11,9 @@ import numpy as np
 from ..arrays import Array, vec3
 from ..errors import Fault, NoFourierForm, known
 from ..rotation import frame_of
+from .cam_outline import Track, outline
 from .element import Element, End, Pens, Range, Tendon
+from .laws import Cam
 from .laws.law import Terms
 
 if TYPE_CHECKING:
@@ -95,8 +97,13 @@ class OnJoints(Element):
 
     # pictures and words
 
-    def outline(self, tree: Tree) -> tuple[End, ...]:
-        """A spiral about the first joint's axis, as large as what the joint carries suggests."""
+    def outline(self, tree: Tree) -> tuple[End | Track, ...]:
+        """A cam's profile with what runs on it, where that is known; else a spiral about the first joint's axis.
+
+        It is as large as what the joint carries suggests.
+        """
+        if isinstance(self.law, Cam) and self.law.made is not None and not self.law.made.run.folds:
+            return outline(self.law.made, tree, self.joints)
         joint = self.joints[0][0]
         link = next(link for link in tree.links if link.joint.name == joint)
         axis = link.motions[0].axis

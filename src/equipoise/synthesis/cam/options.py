@@ -131,7 +131,7 @@ def wishes_of(load: Mechanism, joints: Terms, options: CamOptions) -> Wishes:
             raise InputError(Fault(("fixed",), "expected x,y in the plane of the joint, and not its axis"))
         at, bearing = hypot(*point), atan2(point[1], point[0])
     if bearing is None:
-        bearing = _away(load, plane, other)
+        bearing = _away(load, tree, plane, other)
     roller = length("roller", 0.008) if options.follower == "roller" else None
     gas = options.spring == "gas" and options.stock is None
     return Wishes(
@@ -152,12 +152,13 @@ def wishes_of(load: Mechanism, joints: Terms, options: CamOptions) -> Wishes:
     )
 
 
-def _away(load: Mechanism, plane: Plane, body: str) -> float:
+def _away(load: Mechanism, tree: Tree, plane: Plane, body: str) -> float:
     """Where a spring has room: below the joint on what stands, else along the link that it is on."""
-    if body == "parent" and plane.parent == "world":
-        way = plane.direction("parent", load.gravity)
-    elif body == "parent":
+    if body == "parent" and np.linalg.norm(plane.p0) > 1e-9 and plane.parent != "world":
         way = plane.direction("parent", -plane.p0)
+    elif body == "parent":
+        upright = tree.poses(tree.rest[None]).R[0, tree.index[plane.parent]]
+        way = plane.direction("parent", upright.T @ np.array(load.gravity))
     else:
         way = plane.direction("child", next(b.com for b in load.bodies if b.name == plane.child))
-    return atan2(way[1], way[0]) if np.linalg.norm(way) > 1e-9 else 0.0
+    return round(atan2(way[1], way[0]), 12) if np.linalg.norm(way) > 1e-9 else 0.0
