@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from .robust import adjust, sweep, tolerance
     from .simulate import play
     from .simulate import release as simulate
+    from .study.make import study
     from .synthesis import Design, Load, Problem, Region, design, solve
     from .synthesis import reasons as methods
     from .synthesis.planar.layouts import search as layouts
@@ -95,6 +96,7 @@ __all__ = [
     "stock",
     "sweep",
     "tolerance",
+    "study",
     "verify",
     "view",
 ]
@@ -109,6 +111,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "model.goal": ("Count", "Goal", "Gravity", "Loads", "Tool"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
     "model.payload": ("Payload",),
+    "study": ("study",),
     "proof.certificate": ("Certified", "certify", "verify"),
     "report.export": ("export",),
     "report.figure": ("plot",),

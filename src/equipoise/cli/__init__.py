@@ -27,6 +27,7 @@ from . import (
     report,
     reproduce,
     simulate,
+    study,
     terminal,
     tolerance,
     view,
@@ -48,6 +49,7 @@ __all__ = [
     "report",
     "reproduce",
     "simulate",
+    "study",
     "tolerance",
     "view",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -90,6 +91,23 @@ def progress_bar(start: str) -> Iterator[Progress]:
     with progress.Progress(*columns, console=screen, transient=True) as bar:
         task = bar.add_task(start, total=1.0)
         yield lambda what, share: bar.update(task, description=what, completed=share, total=1.0 if share else None)
+
+
+@contextmanager
+def reports(bar: Progress, seconds: float) -> Iterator[Progress]:
+    """A progress bar that is also told in lines on standard error, every so many seconds, when that is no terminal."""
+    if sys.stderr.isatty():
+        yield bar
+        return
+    last = time.monotonic()
+
+    def tell(what: str, share: float) -> None:
+        nonlocal last
+        if time.monotonic() - last >= seconds:
+            last = time.monotonic()
+            say(what)
+
+    yield tell
 
 
 @contextmanager

@@ -203,6 +203,20 @@ def validate(data: object) -> tuple[MechanismFile | None, list[tuple[Fault, bool
         return None, list(islice(_faults(error, data), COUNTED))
 
 
+def defaults(path: Path, data: object) -> dict[str, Any]:
+    """Key -> default, of a mapping at a path of a file; None where there is none."""
+    fields = _model(path, data).model_fields
+    return {
+        field.alias or name: None if field.is_required() else _as_data(field.get_default())
+        for name, field in fields.items()
+    }
+
+
+def _as_data(value: Any) -> Any:
+    """A default as a file would have it."""
+    return {} if isinstance(value, Item) else list(value) if isinstance(value, tuple) else value
+
+
 def _faults(error: ValidationError, data: object) -> Iterator[tuple[Fault, bool]]:
     details = error.errors(include_url=False)
     missing = {detail["loc"] for detail in details if detail["type"] == "missing"}

@@ -22,7 +22,7 @@ from .mesh_files import mesh_file
 from .schema import SCHEMA, MechanismFile, validate
 from .yaml_positions import Located, parse
 
-__all__ = ["read", "to_text"]
+__all__ = ["built", "read", "to_text"]
 _SINGULAR = {"bodies": "body", "joints": "joint", "couplings": "coupling"}
 
 
@@ -33,7 +33,15 @@ def read(path: str | os.PathLike[str], base: str | None = None) -> Mechanism:
         InputError: with a fault for everything that is wrong, each with its file, line and column.
     """
     name = os.fspath(path)
-    located = parse(read_text(name), name)
+    return built(parse(read_text(name), name), base)
+
+
+def built(located: Located, base: str | None = None) -> Mechanism:
+    """The mechanism of a file's data.
+
+    Raises:
+        InputError: as `read`.
+    """
     file, found = validate(located.data)
     if file is None or located.faults:
         if isinstance(located.data, dict) and located.data.get("schema", SCHEMA) != SCHEMA:

@@ -256,14 +256,14 @@ def _layouts(n: int, size: int, joints: int, repeated: bool) -> Iterator[Layout]
     return more((), 0, size, joints)
 
 
-def example_arm(n: int) -> Mechanism:
-    """An arm of n - 1 equal links that turn about y, their mass centres halfway."""
+def example_arm(n: int, length: float = LENGTH, mass: float = MASS, centre: float = 0.5) -> Mechanism:
+    """An arm of n - 1 equal links that turn about y [m, kg], their mass centres at a share of their length."""
     links = ["world", *(f"link {j}" for j in range(2, n + 1))]
     return Mechanism(
         f"arm of {n} links",
-        bodies=tuple(Body(link, MASS, (LENGTH / 2, 0, 0)) for link in links[1:]),
+        bodies=tuple(Body(link, mass, (centre * length, 0, 0)) for link in links[1:]),
         joints=tuple(
-            Joint(f"joint {j + 1}", "revolute", links[j - 1], links[j], (LENGTH if j > 1 else 0, 0, 0), axis=(0, -1, 0))
+            Joint(f"joint {j + 1}", "revolute", links[j - 1], links[j], (length if j > 1 else 0, 0, 0), axis=(0, -1, 0))
             for j in range(1, n)
         ),
     )
