@@ -36,9 +36,9 @@ def test_it_imports_the_standard_library_only():
     assert {*names} <= sys.stdlib_module_names
 
 
-@campaign(1000, block=25)
+@campaign(1600, block=25)
 def test_what_is_tampered_with_is_refused(seeds):
-    """Where the other evaluation says that a claim does not follow any more; where it does, it is accepted."""
+    """Where the other evaluation says that a claim does not follow any more, 1,000 times; else it is accepted."""
     false = 0
     for seed in seeds:
         found, what = tampered(document(TARGETS[seed % len(TARGETS)]), seed)
@@ -63,7 +63,7 @@ def test_claims_have_no_slack(name):
             assert not accepted(found)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", "null", '{"format": "equipoise certificate 1", "claims": {"x": 1}}'])
+@pytest.mark.parametrize("text", ["[]", "{}", "null", '{"format": "equipoise certificate 1", "claims": {"x": 1}}'])
 def test_what_is_no_certificate_is_refused(text, tmp_path):
     path = tmp_path / "cert.json"
     path.write_text(text)
