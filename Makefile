@@ -9,7 +9,7 @@ PYTEST := $(BIN)/python -m pytest
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-all deep lint format docs bench bare constraints clean
+.PHONY: help demo test test-all deep mutants coverage lint format docs bench bare constraints clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -42,6 +42,14 @@ test-all: $(STAMP) ## all tests; those in a browser afterwards, one at a time
 
 deep: $(STAMP) ## long campaigns: twenty times what test-all tries of them
 	EQUIPOISE_DEEP=1 $(PYTEST) -n 2 -m deep
+
+mutants: $(STAMP) ## break the source at 400 places drawn at random, and ask the tests of each: hours
+	$(BIN)/python tests/mutants.py
+
+coverage: $(STAMP) ## branch coverage of energy, balance, synthesis and hardware by the tests that are not slow
+	@$(BIN)/python $(PIP) install -c constraints.txt --group mutation
+	$(BIN)/python -m coverage run --branch --source=src/equipoise -m pytest -q -m "not slow"
+	$(BIN)/python -m coverage report --include='*/energy/*,*/balance.py,*/synthesis/*,*/hardware/*'
 
 lint: $(STAMP) ## style, format, types, import contracts and circles
 	$(BIN)/ruff check
