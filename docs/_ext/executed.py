@@ -3,6 +3,7 @@
 - ``{run}``: command lines, one each, or Python with the argument ``python``; with what they print. They run in a folder
   of the page, where ``examples`` is. ``:exit:`` the code that the last one ends with; ``:head:``, ``:tail:`` how many
   lines of its output are shown; ``:picture:`` a file that it made, with ``:alt:``.
+- ``{file}``: a file of the page's folder, shown as it is written, for the commands after it.
 - ``{element}``: the lines of one spring in a mechanism file, with its picture on an arm, what `check` says of it, and
   its force over its length or angle.
 - ``{paper}``: a paper's published and computed numbers, errata and figures.
@@ -106,6 +107,17 @@ class Run(Executed):
         return "\n".join(lines) + "\n"
 
 
+class File(Executed):
+    has_content = True
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        (name,) = self.arguments
+        text = "\n".join(self.content) + "\n"
+        (self.folder / name).write_text(text)
+        return [nodes.literal_block(text, text, language=Path(name).suffix[1:])]
+
+
 ARM = """\
 schema: 1
 name: an arm
@@ -150,6 +162,7 @@ class Paper(Executed):
 
 
 def setup(app: Any) -> dict[str, bool]:
+    app.add_directive("file", File)
     app.add_directive("run", Run)
     app.add_directive("element", Element)
     app.add_directive("paper", Paper)
