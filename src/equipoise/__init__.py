@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .study.make import study
     from .synthesis import Design, Load, Problem, Region, design, solve
     from .synthesis import reasons as methods
+    from .synthesis.calibrate import calibrate
     from .synthesis.planar.layouts import search as layouts
     from .viewer.server import Viewer as view
 
@@ -76,6 +77,7 @@ __all__ = [
     "Workspace",
     "__version__",
     "adjust",
+    "calibrate",
     "certify",
     "check",
     "clearance",
@@ -122,6 +124,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "synthesis": ("Design", "Load", "Problem", "Region", "design", "reasons as methods", "solve"),
     "synthesis.planar.layouts": ("search as layouts",),
     "viewer.server": ("Viewer as view",),
+    "synthesis.calibrate": ("calibrate",),
 }
 _FROM = {name.split(" as ")[-1]: (module, name.split(" as ")[0]) for module, names in _PLACES.items() for name in names}
 

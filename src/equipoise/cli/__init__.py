@@ -16,6 +16,7 @@ from typing import NoReturn
 from ..model.errors import EquipoiseError, shortened
 from . import (
     adjust,
+    calibrate,
     certify,
     check,
     clearance,
@@ -37,6 +38,7 @@ from .app import app
 __all__ = [
     "adjust",
     "app",
+    "calibrate",
     "certify",
     "check",
     "clearance",
