@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from .report.figure import plot
     from .report.page.make import write as report
     from .reproduce import reproduce
-    from .robust import adjust, sweep, tolerance
+    from .robust import adjust, identify, sweep, tolerance
     from .simulate import play
     from .simulate import release as simulate
     from .study.make import study
@@ -84,6 +84,7 @@ __all__ = [
     "design",
     "export",
     "hardware",
+    "identify",
     "laws",
     "layouts",
     "load",
@@ -96,9 +97,9 @@ __all__ = [
     "simulate",
     "solve",
     "stock",
+    "study",
     "sweep",
     "tolerance",
-    "study",
     "verify",
     "view",
 ]
@@ -119,7 +120,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "report.figure": ("plot",),
     "report.page.make": ("write as report",),
     "reproduce": ("reproduce",),
-    "robust": ("adjust", "sweep", "tolerance"),
+    "robust": ("adjust", "identify", "sweep", "tolerance"),
     "simulate": ("play", "release as simulate"),
     "synthesis": ("Design", "Load", "Problem", "Region", "design", "reasons as methods", "solve"),
     "synthesis.planar.layouts": ("search as layouts",),

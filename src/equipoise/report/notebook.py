@@ -15,11 +15,11 @@ from ..hardware import Bill
 from ..model.notebook import register
 from ..proof.certificate import Certified
 from ..reproduce import Reproduction
-from ..robust import Adjustment, Sweep, Tolerance
+from ..robust import Adjustment, Identified, Sweep, Tolerance
 from ..simulate import Playback, Release
 from ..synthesis import Design
 from ..synthesis.planar.layouts import LayoutSearch
-from . import bill, certificate, layouts, published, robust, simulation, text
+from . import bill, certificate, identify, layouts, published, robust, simulation, text
 from .numbers import percent
 from .page import design as sections
 from .page.html import block
@@ -74,6 +74,7 @@ register(Design, text=printed(text.design_lines), html=design_html, svg=svg)
 register(Adjustment, text=printed(robust.adjustment_lines))
 register(Bill, text=printed(bill.bill_lines))
 register(Certified, text=printed(certificate.certificate_lines))
+register(Identified, text=printed(identify.identify_lines))
 register(LayoutSearch, text=printed(layouts.layout_lines))
 register(Playback, text=printed(simulation.playback_lines))
 register(Release, text=printed(simulation.release_lines))
