@@ -16,6 +16,7 @@ from equipoise.report.drawing import Drawing, save_drawing
 from equipoise.report.sheet import sheet
 from equipoise.report.style import clean
 
+BARE = ("--safety", "1", "--fatigue", "0")  # no more than the list says
 ROOM = ("--outer", "40mm", "--length", "1.2m", "--pulley", "5mm")
 
 
@@ -113,12 +114,14 @@ def test_stock(run, arm, tmp_path) -> None:
         for k, f, m in ((590, 156, 0.05), (78, 48, 0.06), (160, 68, 0.07))
     ]
     listed.write_text("\n".join([*rows, *fits]) + "\n")
-    code, out, err = run("stock", arm, listed, "-o", moved, "--travel", "0.5:2")
+    code, out, err = run("stock", arm, listed, "-o", moved, "--travel", "0.5:2", *BARE)
     assert code == 0
     assert "PROVEN" in out
     assert "EXACT" in out
     assert eq.check(eq.load(moved)).exact
-    code, out, _ = run("stock", arm, listed, "--travel", "0.5:2", "--json")
+    taken = [(spring.part, spring.realisation) for spring in eq.load(moved).springs]
+    assert all(part and realisation in ("eyelet", "telescope") for part, realisation in taken)
+    code, out, _ = run("stock", arm, listed, "--travel", "0.5:2", *BARE, "--json")
     found = json.loads(out)
     assert found["proven"]
     assert found["balance"]["exact"]

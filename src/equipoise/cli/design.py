@@ -9,7 +9,7 @@ import typer
 
 from ..model.errors import InputError, nearest
 from ..model.units import share
-from . import goals, terminal
+from . import buildable, goals, terminal
 from .app import File, Json, app
 
 
@@ -61,7 +61,19 @@ def design(
     joint: Annotated[
         str | None, typer.Option(help="cam: the joint it is on, or a sum such as shoulder+elbow (see docs/cams.md)")
     ] = None,
-    stock: Annotated[Path | None, typer.Option(metavar="LIST", help="cam: take the spring from this list")] = None,
+    stock: Annotated[Path | None, typer.Option(metavar="LIST", help="take the springs from this list")] = None,
+    column: buildable.Columns = None,
+    realise: buildable.Realise = None,
+    safety: buildable.Safety = 1.2,
+    fatigue: buildable.Fatigue = 1.0,
+    cycles: buildable.Cycles = 1e5,
+    max_length: buildable.MaxLength = None,
+    max_force: buildable.MaxForce = None,
+    parallel: buildable.Parallel = 1,
+    without: buildable.Without = None,
+    pulley: Annotated[str, typer.Option(help="with --realise pulley: its radius")] = "10mm",
+    seconds: buildable.Seconds = 40.0,
+    report: Annotated[Path | None, typer.Option(help="write a report: .html or .pdf")] = None,
     span: Annotated[int, typer.Option(min=1, help="springs join bodies at most this many moving joints apart")] = 2,
     pairs: Annotated[str | None, typer.Option(metavar="A:B,...", help="the pairs of bodies instead of a span")] = None,
     radius: Annotated[
@@ -125,10 +137,13 @@ def design(
 
     Example: [bold]equipoise design ur5.urdf --span 3 --radius 150mm --springs 3 -o balanced.yaml --plot ur5.svg[/bold]
     """
+    from ..hardware import Limits
     from ..io import check_savable, save
     from ..report.figure import check_drawable, save_figure
+    from ..report.page.make import check_report
     from ..synthesis import METHODS, by_name
     from . import options, weights
+    from .built import built, write
     from .regions import regions, sizes
 
     given: dict[str, Any] = {
@@ -157,7 +172,11 @@ def design(
         for name in given.keys() & more.keys():
             raise InputError(f"--{name} and --set {name} both give '{name}': leave out one of them")
         given |= more
-    given |= options.for_cam(method, joint, stock)
+    real = realise is not None or (stock is not None and method != "cam")
+    given |= options.for_cam(method, joint, None if real else stock)
+    goes_with = [f"--{name.replace('_', '-')}" for name in buildable.ONLY if not real and terminal.typed(context, name)]
+    if goes_with:
+        raise InputError(f"{goes_with[0]}: needs --realise, or --stock with a list")
     wound = {"stiffness_factor": stiffness_factor, "preload": share(preload, "--preload")}
     lengths = options.free_lengths(free_length or [])
     room = None if clearance is None else options.length(clearance, "--clearance")
@@ -173,27 +192,41 @@ def design(
         check_savable(output)  # before the work, not after it
     if plot:
         check_drawable(plot)
+    if report:
+        check_report(report)
     if mechanism.springs and not keep:
         terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
-    with terminal.progress_bar("designing") as report:
-        found = by_name(mechanism, method, progress=report, **given)
+    if real:
+        asked_of = buildable.choice(
+            Limits(safety=safety, fatigue=fatigue, cycles=cycles), realise=realise, parallel=parallel,
+            max_length=max_length, max_force=max_force, pulley=pulley, without=without, seconds=seconds, seed=seed,
+            springs=springs, objective=given.get("objective", "peak"),
+        )  # fmt: skip
+        built(mechanism, given, asked_of, stock, column, output, report, json)
+        for path in filter(None, (output, report)):
+            terminal.say(f"wrote {path}")
+        return
+    with terminal.progress_bar("designing") as progress:
+        found = by_name(mechanism, method, progress=progress, **given)
         if thick is not None:
             found = found.with_diameter(thick)
         if lengths is not None or room is not None:
-            report("moving the springs", 0.0)
+            progress("moving the springs", 0.0)
             found = found.with_ordinary_springs(lengths, clearance=room, regions=given.get("regions"), **wound)
-        report("judging the design", 0.0)
+        progress("judging the design", 0.0)
         balance = found.balance
         if output:
             save(found.mechanism, output)
         if plot:
-            report("drawing", 0.0)
+            progress("drawing", 0.0)
             save_figure(found.mechanism, plot, balance=balance)
+        if report:
+            write(report, balance, output)
     if json:
         terminal.print_json(found.to_dict())
     else:
         from ..report.text import design_lines
 
         terminal.show(design_lines(found))
-    for path in filter(None, (output, plot)):
+    for path in filter(None, (output, plot, report)):
         terminal.say(f"wrote {path}")

@@ -1,4 +1,4 @@
-"""`equipoise hardware`, `equipoise stock` and `equipoise made-up`: springs to wind, to buy and to practise with."""
+"""`equipoise hardware`: springs to wind and parts as bought, how they are built in, and what that leaves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..model.errors import Fault, InputError
 from ..model.units import quantity, share
 from . import terminal
 from .app import File, Json, app
-from .margins import Cycles, Fatigue, Safety
+from .buildable import Cycles, Fatigue, Safety, named
 
 if TYPE_CHECKING:
     from ..hardware import Options
@@ -82,75 +82,6 @@ def hardware(
     raise typer.Exit(0 if bill.complete else 1)
 
 
-@app.command()
-def stock(
-    file: File,
-    catalogue: Annotated[Path, typer.Argument(help="springs in stock: .csv or .parquet", show_default=False)],
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the moved design: .yaml")] = None,
-    goal: Annotated[str, typer.Option(help="mass or price")] = "mass",
-    column: Annotated[
-        list[str] | None, typer.Option(metavar="NAME=HEADER", help="which column is which, with its unit in brackets")
-    ] = None,
-    travel: Annotated[
-        str, typer.Option(metavar="LOW:HIGH", help="attachments move between these times their distance from the joint")
-    ] = "0.25:4",
-    reach: Annotated[str | None, typer.Option(help="and at most this far from the joint")] = None,
-    seconds: Annotated[float, typer.Option(min=0.1, help="stop with the best so far and its gap")] = 60.0,
-    json: Json = False,
-) -> None:
-    """The best stock springs for a design, with attachments moved to fit their rates, and the proof that they are.
-
-    Example: [bold]equipoise stock balanced.yaml list.csv --column "rate=R [N/mm]" -o stock.yaml[/bold]
-    """
-    from ..balance import check
-    from ..hardware.stock.movable import Travel
-    from ..hardware.stock.parts import read_catalogue
-    from ..hardware.stock.selection import choose
-    from ..io import check_savable, save
-    from . import options
-
-    low, high = _travel(travel)
-    limits = Travel(low, high) if reach is None else Travel(low, high, options.length(reach, "--reach"))
-    columns = dict(_named(text, "--column") for text in column or [])
-    mechanism = terminal.load(file)
-    springs = read_catalogue(catalogue, columns)
-    if output:
-        check_savable(output)
-    with terminal.progress_bar("judging the design") as report, terminal.solver_aside():
-        before = check(mechanism)
-        found = choose(before, springs, goal=goal, travel=limits, seconds=seconds, progress=report)  # type: ignore[arg-type]
-        after = check(found.mechanism)
-    if output:
-        save(found.mechanism, output)
-    if json:
-        terminal.print_json(found.to_dict() | {"balance": after.to_dict()})
-    else:
-        from ..report.bill import choice_lines
-        from ..report.verdict import verdict
-
-        terminal.show(choice_lines(found, before, after))
-        terminal.show(iter([verdict(after)]))
-    if output:
-        terminal.say(f"wrote {output}")
-
-
-@app.command(name="made-up")
-def made_up(
-    output: Annotated[Path, typer.Option("-o", "--output", help=".csv or .parquet", show_default=False)],
-    count: Annotated[int, typer.Option(min=1, help="springs")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="another list")] = 0,
-) -> None:
-    """A list of springs that no vendor sells, to practise `equipoise stock` with.
-
-    Example: [bold]equipoise made-up -o list.csv --count 500[/bold]
-    """
-    from ..hardware.stock.made_up import made_up_catalogue
-    from ..hardware.stock.parts import write_catalogue
-
-    write_catalogue(made_up_catalogue(count, seed), output)
-    terminal.say(f"wrote {output}: {count} springs, all made up")
-
-
 def _options(
     wires: str,
     strength: str | None,
@@ -174,7 +105,7 @@ def _options(
     }
     held = dict(FRICTION)
     for text in friction:
-        kind, value = _named(text, "--friction")
+        kind, value = named(text, "--friction")
         if kind not in held:
             raise InputError(Fault(("--friction",), f"unknown realisation '{kind}'", tuple(held)))
         held[kind] = share(value, "--friction")
@@ -183,26 +114,9 @@ def _options(
         raise InputError(Fault(("--pulley",), f"must be from 0 to 10 m, found {pulley}"))
     return Options(
         wires=tuple(wire(name, rm) for name in options.names(wires)),
-        limits=Limits.changed(dict(_named(text, "--limit") for text in limits)),
+        limits=Limits.changed(dict(named(text, "--limit") for text in limits)),
         envelope=Envelope(**room),
         pulley=radius,
         most=most,
         friction=held,
     )
-
-
-def _named(text: str, option: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals or not name.strip() or not value.strip():
-        raise InputError(Fault((option,), f"expected NAME=VALUE, found '{text}'"))
-    return name.strip(), value.strip()
-
-
-def _travel(text: str) -> tuple[float, float]:
-    low, colon, high = text.partition(":")
-    try:
-        if colon:
-            return float(low), float(high)
-    except ValueError:
-        pass
-    raise InputError(Fault(("--travel",), f"expected LOW:HIGH such as 0.25:4, found '{text}'"))

@@ -11,7 +11,7 @@ import typer
 from ..model.errors import Fault, InputError, nearest
 from . import terminal
 from .app import File, Json, app
-from .margins import Cycles, Fatigue, Safety
+from .buildable import Cycles, Fatigue, Safety
 
 NONE = "none"
 MARGINS = ("safety", "fatigue", "cycles")

@@ -1,5 +1,7 @@
 """From springs on paper to springs one can buy, wind and mount."""
 
+from .choose.choose import choose_parts
+from .choose.chosen import Choice, Chosen
 from .realise.bill import Bill, bill
 from .realise.realisations import Options, Realisation, realisations
 from .sizing.compression import CompressionSpring
@@ -7,12 +9,15 @@ from .sizing.extension import ExtensionSpring
 from .sizing.limits import Limits
 from .sizing.winding import Envelope, Need, Winding
 from .sizing.wire import WIRES, Wire, wire
-from .stock.parts import Stock, read_catalogue, write_catalogue
+from .stock.part import Stock
+from .stock.parts import read_catalogue, write_catalogue
 from .stock.selection import Selection, choose
 
 __all__ = [
     "WIRES",
     "Bill",
+    "Choice",
+    "Chosen",
     "CompressionSpring",
     "Envelope",
     "ExtensionSpring",
@@ -26,6 +31,7 @@ __all__ = [
     "Wire",
     "bill",
     "choose",
+    "choose_parts",
     "read_catalogue",
     "realisations",
     "wire",

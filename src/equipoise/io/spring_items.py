@@ -91,10 +91,12 @@ class LineItem(LawItem):
     mass: Mass = 0.0
     mass_split: Number = 0.5
     diameter: Length = 0.0
+    part: Text = ""
+    realisation: Text = ""
 
     def element(self, folder: FilePath) -> Element:
         own = {key: getattr(self, key) for key in ("name", "body_a", "p_a", "body_b", "p_b")}
-        ends = {key: getattr(self, key) for key in ("mass", "mass_split", "diameter")}
+        ends = {key: getattr(self, key) for key in ("mass", "mass_split", "diameter", "part", "realisation")}
         law, via = self.made(folder, LINE), tuple(guide.guide() for guide in self.via)
         if self.kind == Linear.kind and not via:
             return Spring(**own, **law.values(), **ends)

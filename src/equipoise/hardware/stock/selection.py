@@ -8,12 +8,13 @@ exist. Nothing cheaper than the bound exists, so the first set that is possible 
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Any, Literal
 
 import numpy as np
 
+from ..._version import __version__
 from ...balance import Balance, judged
 from ...energy.extremes import climb
 from ...io import Source
@@ -23,14 +24,18 @@ from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress, silent
 from ...model.units import Amount, quantity
+from ..sizing.limits import Limits
 from .movable import Movable, Travel
-from .parts import Catalogue, Stock
+from .part import Catalogue, Stock, endurance, said
 from .relaxation import OutOfTime, Pull, Relaxation
 
 Goal = Literal["mass", "price"]
 GOALS: tuple[Goal, ...] = ("mass", "price")
 CELLS = 3  # of each distance, to begin with
 REFINEMENTS = 60  # refinements of one set of springs before it counts as unsettled
+HOW = {"extension": "eyelet", "compression": "telescope"}
+"""How a part becomes a spring of zero free length."""
+NEAREST = 0.010  # [m] that the two joints of a telescope need between them
 OVER = 1e-9  # forces over their limit by this share are rounding
 
 
@@ -80,7 +85,7 @@ class Selection:
             "unsettled": self.unsettled,
             "seconds": self.seconds,
             "springs": [
-                {"name": spring.name, "p_a": list(spring.p_a), "p_b": list(spring.p_b), "stock": asdict(stock)}
+                {"name": spring.name, "p_a": list(spring.p_a), "p_b": list(spring.p_b), "stock": said(stock)}
                 for spring, stock in zip(lines(self.mechanism, "stock"), self.stock, strict=True)
             ],
         }
@@ -92,10 +97,15 @@ def choose(
     *,
     goal: Goal = "mass",
     travel: Travel | None = None,
+    limits: Limits | None = None,
     seconds: Amount = 60.0,
     progress: Progress | None = None,
 ) -> Selection:
     """Choose the best stock spring for every spring of a judged design, and move its attachments.
+
+    Args:
+        limits: margins of the largest force, and against fatigue where a spring's wire is known; by default a spring
+            may be used as far as its list says.
 
     A stock spring fits when it bears the largest force and is open at the smallest wherever its attachments may be.
 
@@ -110,7 +120,7 @@ def choose(
     start, movable = monotonic(), Movable(judged(balance).mechanism, travel)
     say = progress or silent
     say("looking at the stock", 0.0)
-    relaxation = _relaxation(movable, catalogue, goal)
+    relaxation = _relaxation(movable, catalogue, goal, limits)
     best: Selection | None = None
     bound, settled, unsettled, open_bound = 0.0, 0, 0, np.inf
     while best is None or best.cost > bound * (1 + 1e-9):
@@ -135,7 +145,7 @@ def choose(
             stock = tuple(catalogue[i] for i in found.stock)
             cost = float(relaxation.cost[list(found.stock)].sum())
             if best is None or cost < best.cost:
-                moved = movable.moved(np.array([s.rate for s in stock]), shares)
+                moved = _built(movable.moved(np.array([s.rate for s in stock]), shares), stock)
                 best = Selection(moved, stock, goal, cost, bound, settled, unsettled, 0.0)
     if best is None:
         why = "no set of these springs does what the design's springs do"
@@ -147,14 +157,35 @@ def choose(
     return replace(best, bound=bound, settled=settled, unsettled=unsettled, seconds=taken)
 
 
-def _relaxation(movable: Movable, catalogue: Catalogue, goal: Goal) -> Relaxation:
+def _built(mechanism: Mechanism, stock: tuple[Stock, ...]) -> Mechanism:
+    """With the parts' numbers and masses, behind an eyelet or in a case: on the ground where one end is there."""
+    springs = [
+        replace(
+            spring, part=one.part, realisation=HOW[one.kind], mass=one.mass, diameter=one.outer_diameter,
+            mass_split=0.0 if spring.body_b == "world" else 1.0,
+        )
+        for spring, one in zip(lines(mechanism, "stock"), stock, strict=True)
+    ]  # fmt: skip
+    provenance = {
+        "program": f"equipoise {__version__}",
+        "method": "stock",
+        "parts": [said(one) for one in dict.fromkeys(stock)],
+        "design": dict(mechanism.provenance),
+    }
+    return replace(mechanism.with_springs(springs), provenance=provenance)
+
+
+def _relaxation(movable: Movable, catalogue: Catalogue, goal: Goal, limits: Limits | None) -> Relaxation:
     rate = np.array([s.rate for s in catalogue])
-    force = np.array([s.max_force for s in catalogue])
+    force = np.array([_bears(s, limits) for s in catalogue])
+    needs_room = np.array([NEAREST if s.kind == "compression" else 0.0 for s in catalogue])
     tension = np.array([s.initial_tension for s in catalogue])
     least, most = shortest(movable)
     allowed = []
     for spring, low, high in zip(movable.springs, least, most, strict=True):
-        fits = np.flatnonzero((tension <= rate * low) & (rate * high <= force * (1 + OVER)))
+        fits = np.flatnonzero(
+            (rate > 0) & (tension <= rate * low) & (needs_room <= low) & (rate * high <= force * (1 + OVER))
+        )
         if not len(fits):
             raise InfeasibleError(
                 f"spring '{spring.name}': none of {len(catalogue):,} stock springs both bears the force and stays open"
@@ -169,6 +200,16 @@ def _relaxation(movable: Movable, catalogue: Catalogue, goal: Goal) -> Relaxatio
     for shares in (movable.low, np.ones_like(movable.low), movable.high):
         relaxation.pulls += _pulls(movable, _longest(movable, shares)[1], shares)
     return relaxation
+
+
+def _bears(part: Stock, limits: Limits | None) -> float:
+    """[N] that it may be used to, if it goes back to nothing between; nothing for a kind that pulls at no eyelet."""
+    if part.kind not in HOW:
+        return 0.0
+    if limits is None:
+        return part.max_force
+    top, _ = endurance(part, limits)
+    return min(part.max_force / limits.safety, 1 / top if top else np.inf)
 
 
 def _edges(low: float, high: float) -> Array:

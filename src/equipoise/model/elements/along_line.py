@@ -43,6 +43,8 @@ class AlongLine(Element):
         mass: float
         mass_split: float
         diameter: float
+        part: str
+        realisation: str
 
     @property
     def guides(self) -> tuple[Guide, ...]:
@@ -175,7 +177,13 @@ class AlongLine(Element):
     @property
     def keys(self) -> dict[str, Any]:
         (body_a, p_a), (body_b, p_b) = self.ends
-        return {"body_a": body_a, "p_a": list(p_a), "body_b": body_b, "p_b": list(p_b)}
+        own = {name: value for name in ("part", "realisation") if (value := getattr(self, name))}
+        return {"body_a": body_a, "p_a": list(p_a), "body_b": body_b, "p_b": list(p_b), **own}
+
+    @property
+    def bought(self) -> str:
+        """Which part it is and how it is built in, as the end of a sentence."""
+        return (f", part {self.part}" if self.part else "") + (f", {self.realisation}" if self.realisation else "")
 
     def mjcf(self) -> Tendon:
         numbers = self.law.mjcf() or {}
@@ -209,7 +217,9 @@ class AlongLine(Element):
         low, high = (1e3 * length for length in path)
         through = f" through {len(self.guides)} guide{'s' * (len(self.guides) > 1)}" if self.guides else ""
         use = f"{low:.1f} to {high:.1f} mm, {force[0]:.4g} to {force[1]:.4g} N"
-        return f"{self.name}: {self.law.noun.split(' ', 1)[1]}, {self.law.words()}, {ends} mm{through}, {use}"
+        return (
+            f"{self.name}: {self.law.noun.split(' ', 1)[1]}, {self.law.words()}, {ends} mm{through}, {use}{self.bought}"
+        )
 
 
 def _stretch(part: Segment, tree: Tree, poses: Poses) -> Array:

@@ -29,6 +29,8 @@ class LineElement(AlongLine):
         mass: [kg], lumped at the two ends.
         mass_split: the share of `mass` at `p_a`; the rest is at `p_b`.
         diameter: outside [m], to be drawn.
+        part: what it is ordered by.
+        realisation: how it is built in: direct, eyelet, pulley.
     """
 
     name: str
@@ -41,6 +43,8 @@ class LineElement(AlongLine):
     mass: float = 0.0
     mass_split: float = 0.5
     diameter: float = 0.0
+    part: str = ""
+    realisation: str = ""
 
     @property
     def noun(self) -> str:

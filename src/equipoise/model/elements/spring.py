@@ -34,6 +34,8 @@ class Spring(AlongLine):
         mass: [kg], lumped at the two ends.
         mass_split: the share of `mass` at `p_a`; the rest is at `p_b`.
         diameter: outside of the coils [m], for clearance only.
+        part: what it is ordered by.
+        realisation: how it is built in.
     """
 
     name: str
@@ -46,6 +48,8 @@ class Spring(AlongLine):
     mass: float = 0.0
     mass_split: float = 0.5
     diameter: float = 0.0
+    part: str = ""
+    realisation: str = ""
 
     @property
     def law(self) -> Linear:
@@ -85,7 +89,7 @@ class Spring(AlongLine):
         free = f", free length {1e3 * self.free_length:.4g} mm" if self.free_length else ""
         ends = " to ".join(f"{body} {millimetres(p)}" for body, p in self.ends)
         most = f"up to {1e3 * path[1]:.0f} mm, {max(map(abs, force)):.3g} N"
-        return f"{self.name}: {self.stiffness:.5g} N/m{free}, {ends} mm, {most}"
+        return f"{self.name}: {self.stiffness:.5g} N/m{free}, {ends} mm, {most}{self.bought}"
 
     def scaled(self, factor: float) -> Spring:
         return replace(self, stiffness=factor * self.stiffness)

@@ -1,0 +1,1 @@
+"""Springs that exist and their attachments, chosen together."""
