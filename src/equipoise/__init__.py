@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from .robust import adjust, identify, sweep, tolerance
     from .simulate import play
     from .simulate import release as simulate
+    from .study.compare import compare
     from .study.make import study
     from .synthesis import Design, Load, Problem, Region, design, solve
     from .synthesis import reasons as methods
@@ -81,6 +82,7 @@ __all__ = [
     "certify",
     "check",
     "clearance",
+    "compare",
     "design",
     "export",
     "hardware",
@@ -115,6 +117,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
     "model.payload": ("Payload",),
     "study": ("study",),
+    "study.compare": ("compare",),
     "proof.certificate": ("Certified", "certify", "verify"),
     "report.export": ("export",),
     "report.figure": ("plot",),

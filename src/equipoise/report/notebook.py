@@ -17,9 +17,10 @@ from ..proof.certificate import Certified
 from ..reproduce import Reproduction
 from ..robust import Adjustment, Identified, Sweep, Tolerance
 from ..simulate import Playback, Release
+from ..study.compare import Comparison
 from ..synthesis import Design
 from ..synthesis.planar.layouts import LayoutSearch
-from . import bill, certificate, identify, layouts, published, robust, simulation, text
+from . import bill, certificate, compare, identify, layouts, published, robust, simulation, text
 from .numbers import percent
 from .page import design as sections
 from .page.html import block
@@ -75,6 +76,7 @@ register(Adjustment, text=printed(robust.adjustment_lines))
 register(Bill, text=printed(bill.bill_lines))
 register(Certified, text=printed(certificate.certificate_lines))
 register(Identified, text=printed(identify.identify_lines))
+register(Comparison, text=printed(compare.comparison_lines))
 register(LayoutSearch, text=printed(layouts.layout_lines))
 register(Playback, text=printed(simulation.playback_lines))
 register(Release, text=printed(simulation.release_lines))
