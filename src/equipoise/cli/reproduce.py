@@ -24,14 +24,15 @@ def reproduce(
 
     Example: [bold]equipoise reproduce lin2010 -o lin2010[/bold]
     """
-    from .. import reproduce as papers
     from ..report.published import failure_lines, reproduction_lines
+    from ..reproduce import PAPERS
+    from ..reproduce import reproduce as reproduced
 
     found = []
     with terminal.progress_bar("reproducing") as report:
-        for key in papers.PAPERS if paper is None else (paper,):
+        for key in PAPERS if paper is None else (paper,):
             report(f"reproducing {key}", 0.0)
-            found.append(papers.reproduce(key))
+            found.append(reproduced(key))
         written = [] if output is None else _write(found, output)
     rows = [row for one in found for row in one.rows]
     if json:
