@@ -12,11 +12,45 @@ import equipoise as eq
 from equipoise.io import mjcf, urdf, yaml
 from equipoise.model.errors import InputError
 from equipoise.model.goal import Count, Goal, Gravity, Loads, Tool
+from equipoise.model.motion import Box, Listed, Motion, Where
 
 ARM = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
 TOOLS = (Tool("cup", "link3", ("0", "800 g"), (0.3, 0, 0), 3.0), Tool("plate", "link3", 1.0))
 FULL = Goal(Loads(TOOLS, (Gravity((0, 0, -9.81)), Gravity((9.81, 0, 0), 2.0)), "5 deg"),
-            Count("peak", {"joint2": 2.0}, ("joint2", "joint3"), "effort"))  # fmt: skip
+            count=Count("peak", {"joint2": 2.0}, ("joint2", "joint3"), "effort"))  # fmt: skip
+
+
+CYCLE = Motion(("joint2", "joint3"), (0, 1, 2.5), ((0, 0.1), (1, 0.3), (0, 0.1)), stops=True, share=2.0)
+WHERES = [
+    Where((CYCLE, Motion(("joint3",), (0, 1, 2), ((0,), (1,), (0.5,))))),
+    Where(listed=Listed(("joint2",), ((0.5,), (1.0,)), (1.0, 3.0))),
+    Where(box=Box("link3", (0, -1, 0), (0.5, 1, 0.5), (0.3, 0, 0)), samples=200, seed=4),
+    Where(whole_turns=True),
+]
+
+
+@pytest.mark.parametrize("where", WHERES)
+def test_a_file_loses_no_pose(tmp_path, where):
+    arm = replace(ARM, goal=Goal(poses=where))
+    eq.save(arm, tmp_path / "arm.yaml")
+    assert eq.load(tmp_path / "arm.yaml") == arm
+
+
+def test_motions_and_poses_come_from_tables(tmp_path):
+    (tmp_path / "arm.yaml").write_text(f"{FILE}  poses: {{motions: [{{file: pick.csv, stops: true}}, go.csv]}}\n")
+    (tmp_path / "pick.csv").write_text("time [ms],shoulder [deg]\n0,0\n500,90\n")
+    (tmp_path / "go.csv").write_text("time,shoulder\n0,0\n1,2\n2,0\n")
+    pick, go = eq.load(tmp_path / "arm.yaml").goal.poses.motions
+    assert pick == Motion(("shoulder",), (0, 0.5), ((0,), (np.pi / 2,)), stops=True)
+    assert (go.cyclic, pick.cyclic) == (True, False)
+    (tmp_path / "arm.yaml").write_text(f"{FILE}  poses: {{list: here.csv}}\n")
+    (tmp_path / "here.csv").write_text("shoulder [deg],share\n0,1\n180,3\n")
+    assert eq.load(tmp_path / "arm.yaml").goal.poses.listed == Listed(("shoulder",), ((0,), (np.pi,)), (1, 3))
+    (tmp_path / "here.csv").write_text("shoulder [deg],share\n0,1\n180,x\n")
+    with pytest.raises(InputError) as caught:
+        eq.load(tmp_path / "arm.yaml")
+    assert f"{tmp_path / 'arm.yaml'}:6:17: goal.poses.list: cannot be used" in str(caught.value)
+    assert "here.csv:3: expected 2 numbers, found '180,x'" in str(caught.value)
 
 
 @pytest.mark.parametrize("goal", [FULL, Goal(Loads(TOOLS)), Goal(count=Count(share_of="effort")), Goal()])
@@ -55,6 +89,15 @@ goal:
         ("count: {torque: mean}", "goal.count.torque: no torque that counts 'mean' (valid: rms, peak)"),
         ("count: {share_of: efort}", "goal.count.share_of: no share 'efort'; did you mean 'effort'?"),
         ("count: {joints: {sholder: 2}}", "there is no joint 'sholder'; did you mean 'shoulder'?"),
+        (
+            "poses: {motion: {time: [0, 1], joints: {shoulder: [0, 1]}}}",
+            "goal.poses.motion.time: a motion has at least 3",
+        ),
+        ("poses: {motion: no.csv}", "goal.poses.motion: cannot be used"),
+        ("poses: {motion: {joint: 1}}", "goal.poses.motion.joint: unknown key 'joint'; did you mean 'joints'?"),
+        ("poses: {list: {joints: {elbow: [0]}}}", "goal.poses.list: no coordinate 'elbow' (valid: shoulder)"),
+        ("poses: {box: {body: arm, low: [0, 0, 1], high: [0, 0, 0]}}", "goal.poses.box.low: must be at most 'high'"),
+        ("poses: {box: {body: hand, low: [0, 0, 0], high: [0, 0, 0]}}", "goal.poses.box.body: there is no body 'hand'"),
         ("load: 1", "goal.load: unknown key 'load'; did you mean 'loads'?"),
     ],
 )

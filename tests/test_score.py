@@ -80,7 +80,7 @@ GOALS = {
     "gravity": Goal(Loads(gravity=(Gravity((0, 0, -9.81)), WALL))),
     "tilt": Goal(Loads(tilt=0.3)),
     "tools, gravity, tilt": Goal(Loads((CUP, PLATE), (Gravity((0, 0, -9.81)), WALL), 0.2)),
-    "effort, weights": Goal(Loads((CUP,)), Count(joints={"joint3": 2.0}, share_of="effort")),
+    "effort, weights": Goal(Loads((CUP,)), count=Count(joints={"joint3": 2.0}, share_of="effort")),
 }
 
 
@@ -125,7 +125,7 @@ def test_it_is_that_of_mujoco(name, torque):
 
 def test_a_cone_of_tilts_on_1000_of_them():
     """The worst of the cone is never passed, and nearly met."""
-    goal = Goal(Loads(tilt=np.radians(5)), Count("peak"))
+    goal = Goal(Loads(tilt=np.radians(5)), count=Count("peak"))
     design = eq.solve(eq.Problem.of(ARM, span=1, radius=0.15, goal=goal), springs=1)
     rng = np.random.default_rng(1)
     q = peak_poses(Tree.of(ARM), SAMPLES, 0)

@@ -97,6 +97,7 @@ def design(
     tilt: goals.Tilt = None,
     share_of: goals.ShareOf = None,
     joint_weight: goals.Weights = None,
+    motion: goals.Motion = None,
     front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
     exact: Annotated[bool, typer.Option("--exact", help="insist on exact balance; exit code 1 if infeasible")] = False,
     unlimited: Annotated[
@@ -184,7 +185,7 @@ def design(
     if room is None and thick is not None:
         raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
-    goal = goals.asked(mechanism, payload, payload_on, payload_at, tilt, share_of, joint_weight or [])
+    goal = goals.asked(mechanism, payload, payload_on, payload_at, tilt, share_of, joint_weight or [], motion)
     if goal is not None:
         given["goal"] = goal
     sizes(mechanism, given.get("radius"), given.get("regions", {}))

@@ -26,6 +26,14 @@ On = Annotated[str | None, typer.Option(metavar="BODY", help="with --payload: th
 At = Annotated[str, typer.Option(metavar="X,Y,Z", help="with --payload: where, in that body's frame")]
 Tilt = Annotated[str | None, typer.Option(metavar="ANGLE", help="the base leans by up to this, in any direction")]
 ShareOf = Annotated[str | None, typer.Option(metavar="effort", help="torque as a share of what each motor can do")]
+Motion = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE.csv",
+        help="the motion that counts, inertia too: a column 'time' and one for each coordinate that moves, such as "
+        "'elbow [deg]'",
+    ),
+]
 Weights = Annotated[
     list[str] | None,
     typer.Option("--joint-weight", metavar="JOINT=FACTOR", help="a joint's torque counts so much; may be repeated"),
@@ -40,6 +48,7 @@ def asked(
     tilt: str | None,
     share_of: str | None,
     weights: Sequence[str],
+    motion: str | None,
 ) -> Goal | None:
     """The file's goal with what the options say instead; None where they say nothing.
 
@@ -62,7 +71,13 @@ def asked(
         count = replace(count, share_of=share_of)
     if weights:
         count = replace(count, joints={**count.joints, **dict(map(_weight, weights))})
-    found = replace(goal, loads=loads, count=count)
+    poses = goal.poses
+    if motion is not None:
+        from ..io.motion_table import read_motion
+
+        course = read_motion(motion, mechanism.coordinates)
+        poses = replace(poses, motions=(course,), listed=None, box=None, samples=None)
+    found = replace(goal, loads=loads, poses=poses, count=count)
     return None if found == goal else found
 
 

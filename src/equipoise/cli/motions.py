@@ -10,14 +10,13 @@ import numpy as np
 
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError, nearest
-from ..model.units import quantity, to_si
+from ..model.units import quantity
 
 if TYPE_CHECKING:
     from ..kinematics import Tree
     from ..kinematics.motion import CubicMove
 
 FRAMES = 401  # of moves
-LONGEST_TABLE = 50_000  # rows of a table
 
 Motion = tuple[Array, Array]
 """(T,) times [s] and (T, n) independent coordinates [rad or m]."""
@@ -60,7 +59,8 @@ def _placed(tree: Tree, moving: Sequence[str], q: Array) -> Array:
 
 
 def _move(text: str, tree: Tree) -> CubicMove:
-    from ..kinematics.motion import USABLE, CubicMove, unusable
+    from ..kinematics.motion import CubicMove
+    from ..model.motion import USABLE, unusable
 
     parts = text.rsplit(":", 4)
     if len(parts) != 5:
@@ -79,42 +79,9 @@ def _move(text: str, tree: Tree) -> CubicMove:
 
 
 def _table(path: Path, tree: Tree) -> Motion:
-    from ..io.tables import csv_rows, heading
-    from ..kinematics.motion import USABLE, unusable
+    from ..io.motion_table import read_motion
 
-    def fault(line: int, message: str, choices: tuple[str, ...] = ()) -> InputError:
-        return InputError(Fault((), message, choices, file=str(path), line=line))
-
-    (at, head), *body = csv_rows(path, LONGEST_TABLE, ",")
-    columns = [heading(cell) for cell in head]
-    names, factors = [name for name, _ in columns], []
-    for name, unit in columns:
-        if name != "time" and name not in tree.coordinates:
-            raise fault(at, f"no coordinate {nearest(name, tree.coordinates)}", ("time", *tree.coordinates))
-        dimension = "time" if name == "time" else tree.coordinates[tree.coordinates.index(name)].dimension
-        try:
-            factors.append(to_si(f"1 {unit}", dimension) if unit else 1.0)
-        except ValueError as error:
-            raise fault(at, f"column '{name}': {error}") from None
-    if "time" not in names or len(set(names)) < len(names):
-        raise fault(at, f"expected the columns 'time' and coordinates, each once, found {', '.join(names)}")
-    values = np.zeros((len(body), len(names)))
-    for i, (line, row) in enumerate(body):
-        try:
-            values[i] = [float(cell) for cell in row]
-        except ValueError:
-            raise fault(line, f"expected {len(names)} numbers, found '{','.join(row)}'") from None
-        if not np.isfinite(values[i]).all():
-            raise fault(line, "must be finite")
-    values = values * factors
-    time = values[:, names.index("time")]
-    if len(time) < 3 or (np.diff(time) <= 0).any():
-        raise fault(at, "a motion has at least three times, in increasing order")
-    if (odd := unusable(time, values)) is not None:
-        line = body[odd][0]
-        raise fault(line, f"is no motion: {USABLE}")
-    q = np.zeros((len(time), tree.n))
-    for name, column in zip(names, values.T, strict=True):
-        if name != "time":
-            q[:, tree.coordinates.index(name)] = column
-    return time, _placed(tree, names, q)
+    found = read_motion(path, tree.coordinates)
+    q = np.zeros((len(found.time), tree.n))
+    q[:, [tree.coordinates.index(name) for name in found.coordinates]] = found.values
+    return np.array(found.time), _placed(tree, found.coordinates, q)

@@ -45,7 +45,9 @@ def simulate(
             "'time' and one for each coordinate that moves, such as 'elbow [deg]'",
         ),
     ] = None,
-    plot: Annotated[Path | None, typer.Option(help="of the energies of a motion: .svg, .png or .pdf")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="of torque, power and energy in a motion: .svg, .png or .pdf")
+    ] = None,
     json: Json = False,
 ) -> None:
     """Does it stay where you leave it, in an independent engine? Exit code 1 when it moves.
@@ -89,7 +91,7 @@ def simulate(
 
 
 def _drive(mechanism: Mechanism, motion: motions.Motion, radius: float | None, plot: Path | None, json: bool) -> None:
-    from ..report.simulation import playback_lines, playback_plot
+    from ..report.simulation import playback_lines
     from ..simulate import play
 
     played = play(mechanism, *motion, radius)
@@ -98,7 +100,7 @@ def _drive(mechanism: Mechanism, motion: motions.Motion, radius: float | None, p
     else:
         terminal.show(playback_lines(played))
     if plot is not None:
-        from ..report.plots import save_plot
+        from ..report.motion_figure import save_motion
 
-        save_plot(playback_plot(played), plot)
+        save_motion(played, plot)
         terminal.say(f"wrote {plot}")

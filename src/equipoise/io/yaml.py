@@ -11,7 +11,6 @@ from typing import TypeVar
 
 from ..model.elements import Element, Vec3
 from ..model.errors import Fault, InputError, Path, nearest
-from ..model.goal import Goal
 from ..model.mechanism import Body, Capsule, Coupling, Joint, Loop, Mechanism, PointMass, Shape, Workspace
 from ..model.units import quantity
 from . import dh, models
@@ -92,7 +91,6 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
             shapes=_own(list(_shapes(file, FilePath(located.file).parent)), tree.shapes),
             gravity=tree.gravity or file.gravity,
             workspace=Workspace(**file.workspace.values()),
-            goal=_goal(file),
             provenance=file.provenance,
             independent=tuple(file.independent),
             assembly=tuple(assembly.items()),
@@ -101,14 +99,13 @@ def _mechanism(file: MechanismFile, located: Located, base: str | None) -> Mecha
         raise located.error([*faults, *_translate(error.faults, tree)]) from None
     if faults:
         raise located.error(faults)
-    return mechanism
-
-
-def _goal(file: MechanismFile) -> Goal:
     try:
-        return file.goal.goal()
+        goal = file.goal.goal(FilePath(located.file).parent, mechanism.coordinates)
+        return replace(mechanism, goal=goal)
     except InputError as error:
-        raise InputError([replace(fault, path=("goal", *fault.path)) for fault in error.faults]) from None
+        inside = (fault if fault.file or fault.path[:1] == ("goal",) else replace(fault, path=("goal", *fault.path))
+                  for fault in error.faults)  # fmt: skip
+        raise located.error(inside) from None
 
 
 T = TypeVar("T", Capsule, Shape)

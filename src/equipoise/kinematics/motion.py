@@ -10,16 +10,6 @@ import numpy as np
 from ..model.arrays import Array
 from ..model.errors import Fault, InputError, nearest
 
-LARGEST, SHORTEST = 1e9, 1e-9  # [s, rad or m] of times and values, [s] between two times: beyond them rates overflow
-USABLE = f"times and values are below {LARGEST:.0e} in size, and times are at least {SHORTEST:.0e} s apart"
-
-
-def unusable(time: Array, values: Array) -> int | None:
-    """The first row of times (T,) [s] and values (T, ...) [rad or m] that has no usable rate; None if all have."""
-    sizes = np.abs(values).reshape(len(time), -1).max(axis=1, initial=0.0)
-    far = (np.abs(time) > LARGEST) | (sizes > LARGEST) | (np.diff(time, prepend=-np.inf) < SHORTEST)
-    return int(np.argmax(far)) if far.any() else None
-
 
 @dataclass(frozen=True)
 class CubicMove:

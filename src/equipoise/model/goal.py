@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from .errors import Fault, InputError, Path, at_least, finite, known, nearest
 from .immutable import immutable
+from .motion import MOST, Where
 from .units import Amount, number, point, quantity
 
 if TYPE_CHECKING:
@@ -135,6 +136,7 @@ class Goal:
     """What a design is for."""
 
     loads: Loads = field(default_factory=Loads)
+    poses: Where = field(default_factory=Where)
     count: Count = field(default_factory=Count)
 
     def __bool__(self) -> bool:
@@ -157,7 +159,8 @@ class Goal:
         }
         defaults = {"torque": "rms", "joints": {}, "only": None, "share_of": None}
         counted = {name: value for name, value in counted.items() if value != defaults[name]}
-        found = {"loads": tools, "gravity": gravity, "tilt": loads.tilt, "count": counted}
+        poses = self.poses.to_dict()
+        found = {"loads": tools, "gravity": gravity, "tilt": loads.tilt, "poses": poses, "count": counted}
         return {name: value for name, value in found.items() if value}
 
     def counting(self, **changes: Any) -> Goal:
@@ -181,6 +184,14 @@ class Goal:
             yield from finite(("goal", "gravity", i, "vector"), gravity.vector)
         if self.loads.tilt:
             yield from at_least(("goal", "tilt"), self.loads.tilt, 0, "rad")
+        for part, name in self.poses.coordinates():
+            if name not in m.coordinates:
+                yield Fault(("goal", "poses", part), f"no coordinate {nearest(name, m.coordinates)}", m.coordinates)
+        if self.poses.box is not None:
+            yield from known(("goal", "poses", "box", "body"), self.poses.box.body, "body", m.body_names)
+        if self.poses.size > MOST:
+            problem = f"has {self.poses.size:,} numbers, and a file holds at most {MOST:,}: leave out rows"
+            yield Fault(("goal", "poses"), problem)
         yield from _joints(("goal", "count", "joints"), self.count.joints, m)
         yield from _joints(("goal", "count", "only"), self.count.only or (), m)
 

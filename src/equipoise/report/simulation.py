@@ -9,9 +9,10 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ..reproduce.record import Plot
 from ..simulate import Playback, Release
 from ..simulate.release import SOFT
+
+AGREE = 1e-6  # of the largest torque: two programs that say the same
 
 
 def release_lines(found: Release) -> Iterator[RenderableType]:
@@ -59,27 +60,12 @@ def playback_lines(found: Playback) -> Iterator[RenderableType]:
     for name, a, b, c, d in zip(found.coordinates, bare_peak, peak, bare_work, work, strict=True):
         table.add_row(Text(name), f"{a:.4g}", f"{b:.4g}", name.load_unit, f"{c:.4g}", f"{d:.4g}", "J")
     yield table
+    if found.apart is not None:
+        yield Text(f"MuJoCo's inverse dynamics and the torques predicted here differ by at most {found.apart:.1e} of "
+                   "the largest", style="bold green" if found.apart < AGREE else "bold red")  # fmt: skip
     whole = found.gravity + found.springs
     yield Text(f"over the motion gravity's energy varies by {np.ptp(found.gravity):.5g} J, that of gravity and springs "
                f"by {np.ptp(whole):.2g} J; work is the integral of |torque x rate|")  # fmt: skip
-
-
-def playback_plot(found: Playback) -> Plot:
-    """The energies over the motion, as the papers draw them."""
-    return Plot(
-        "motion",
-        f"{found.name}: energies over the motion",
-        "time [s]",
-        "energy [J]",
-        found.time,
-        {
-            "gravity": found.gravity,
-            "springs": found.springs,
-            "gravity + springs": found.gravity + found.springs,
-            "kinetic": found.kinetic,
-        },
-        note="from MuJoCo; potential energies are counted from the start",
-    )
 
 
 def _turn(x: float) -> str:

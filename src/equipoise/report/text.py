@@ -129,6 +129,7 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
     ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
+    where = design.goal.poses.where(design.samples or 0) if design.goal.poses.chosen else where
     yield Text(f"  unbalanced  {terms.show(design.unbalanced)}  ({where})")
     floor = EXACT * design.unbalanced
 

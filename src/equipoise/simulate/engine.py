@@ -66,6 +66,7 @@ class Engine:
         friction: with the joints' friction and damping. Without, what stays is balanced, and not held.
 
     Attributes:
+        modelled: the mechanism with the inertias that the engine knows.
         tree: our kinematics, which say where the bodies are.
         settings: of the solver.
 
@@ -96,7 +97,8 @@ class Engine:
             replace(body, inertia=_sphere(body.mass, radius or 0.0)) if body.name in unknown else body
             for body in mechanism.bodies
         )
-        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(replace(mechanism, bodies=tuple(bodies)), warn=False))
+        self.modelled = replace(mechanism, bodies=tuple(bodies))
+        self.model = mujoco.MjModel.from_xml_string(mjcf.to_text(self.modelled, warn=False))
         self.data = mujoco.MjData(self.model)
         self._joints = mjcf.joint_map(mechanism)
         self._own = OwnLaws(mujoco, mechanism)

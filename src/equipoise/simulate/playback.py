@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 
 from ..io import Source, loaded
+from ..kinematics import Tree
 from ..model.arrays import Array, frozen
 from ..model.coordinate import Coordinate
 from ..model.errors import InputError
+from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.units import Amount, quantity
+from ..synthesis.states import States, load_torque
 from .engine import Engine
 from .quiet import quiet
 
@@ -26,6 +29,8 @@ class Playback(Shown):
         torque, unsprung: (T, n) of the actuators with the springs and without them [N m or N].
         gravity, springs: (T,) potential energies [J], each counted from its value at the start.
         kinetic: (T,) [J].
+        predicted: (T, n) what this program says of `torque`, from the same rates and accelerations [N m or N]; None
+            where the engine's joints are none of ours: with loops or balls.
     """
 
     name: str
@@ -37,6 +42,20 @@ class Playback(Shown):
     gravity: Array
     springs: Array
     kinetic: Array
+    predicted: Array | None = None
+
+    @property
+    def apart(self) -> float | None:
+        """How far the prediction and the engine are apart at most, as a share of the largest torque."""
+        if self.predicted is None:
+            return None
+        return float(np.abs(self.predicted - self.torque).max() / (np.abs(self.torque).max() or 1.0))
+
+    @property
+    def power(self) -> tuple[Array, Array]:
+        """(T, n) each: what the actuators put in [W], with springs and without."""
+        rate = np.gradient(self.motion, self.time, axis=0)
+        return self.torque * rate, self.unsprung * rate
 
     @property
     def peak(self) -> tuple[Array, Array]:
@@ -63,6 +82,7 @@ class Playback(Shown):
             ],
             "energy_variation": float(np.ptp(self.gravity + self.springs)),
             "gravity_variation": float(np.ptp(self.gravity)),
+            "prediction_apart": self.apart,
         }
 
 
@@ -81,18 +101,29 @@ def play(mechanism: Source, time: Array, motion: Array, radius: Amount | None = 
     if len(time) < 3 or (np.diff(time) <= 0).any():
         raise InputError("a motion needs at least three times, in increasing order")
     sprung, bare = (Engine(m, radius, friction=True) for m in (mechanism, mechanism.with_springs(())))
-    torque, total, kinetic = _torques(sprung, time, motion)
-    unsprung, gravity, _ = _torques(bare, time, motion)
+    torque, total, kinetic, course = _torques(sprung, time, motion)
+    unsprung, gravity, _, _ = _torques(bare, time, motion)
     springs = total - gravity
     tree = sprung.tree
     return Playback(
         mechanism.name, tree.coordinates, time, motion, torque, unsprung, gravity - gravity[0],
-        springs - springs[0], kinetic,
+        springs - springs[0], kinetic, _predicted(sprung.modelled, course),
     )  # fmt: skip
 
 
-def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """(T, n) torques, (T,) potential and kinetic energy."""
+def _predicted(mechanism: Mechanism, course: tuple[Array, Array, Array] | None) -> Array | None:
+    """(T, n) by this program, along positions, rates and accelerations (T, n)."""
+    if course is None:
+        return None
+    q = course[0]
+    states = States(q, np.full(len(q), 1 / len(q)), *course[1:])
+    return load_torque(mechanism, states, states.moving(Tree.of(mechanism)))
+
+
+def _torques(
+    engine: Engine, time: Array, motion: Array
+) -> tuple[Array, Array, Array, tuple[Array, Array, Array] | None]:
+    """(T, n) torques, (T,) potential and kinetic energy, and (T, n) positions, rates and accelerations of ours."""
     mj, model, data = engine._mj, engine.model, engine.data
     placed = []
     for q in motion:
@@ -107,11 +138,22 @@ def _torques(engine: Engine, time: Array, motion: Array) -> tuple[Array, Array, 
             mj.mj_forward(model, data)
         inertial = np.zeros(model.nv)
         mj.mj_mulM(model, data, inertial, qacc)
+        inertial -= model.dof_armature * qacc  # it is none of the mechanism's: see `Engine`
         dry = model.dof_frictionloss * np.sign(qvel)
         torques.append(engine.at_coordinates(inertial + dry + data.qfrc_bias - data.qfrc_passive))
         potential.append(data.energy[0])
         kinetic.append(data.energy[1])
-    return np.array(torques), np.array(potential), np.array(kinetic)
+    return np.array(torques), np.array(potential), np.array(kinetic), _course(engine, motion, velocity, acceleration)
+
+
+def _course(engine: Engine, q: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array] | None:
+    """(T, n) each: positions, rates and accelerations of the independent coordinates, from the engine's (T, nv)."""
+    model, mechanism = engine.model, engine.mechanism
+    if mechanism.loops or any(joint.type == "spherical" for joint in mechanism.joints):
+        return None
+    names = [model.joint(int(j)).name for j in model.dof_jntid]
+    columns = [names.index(name) for name in engine.tree.coordinates]
+    return q, velocity[:, columns], acceleration[:, columns]
 
 
 def _velocity(engine: Engine, time: Array, placed: list[Array], i: int) -> Array:

@@ -154,7 +154,9 @@ class Design(Shown):
     @cached_property
     def fewest(self) -> Fewest | None:
         """How many springs exact balance needs at least; None where no bound is known, or where springs stayed."""
-        return None if self.free_parameters.get("keep") else fewest(self.mechanism, self.joints)
+        return (
+            None if self.free_parameters.get("keep") or self.goal.poses.chosen else fewest(self.mechanism, self.joints)
+        )
 
     def status(self, row: FrontRow) -> str:
         """Of a row of the front: "optimal" (its bound is reached), "cannot be exact" (proved), or "open"."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..model.arrays import Array, Booleans
 from ..model.errors import Fault, InputError
 from ..model.goal import BY_DEFAULT, Count, Goal
 from ..model.mechanism import Joint
+from ..model.motion import Where
 from .load import cases
 
 if TYPE_CHECKING:
@@ -26,16 +28,22 @@ def asked(goal: Goal, given: Mapping[str, Any]) -> dict[str, Any]:
         "weights": dict(count.joints),
         "joints": count.only,
         "loads": cases(goal.loads),
+        "samples": goal.poses.samples,
         "goal": goal,
     }
-    return {name: value for name, value in meant.items() if given[name] is None}
+    found = {name: value for name, value in meant.items() if given[name] is None}
+    whole = given["unlimited"] or goal.poses.whole_turns
+    return found | {"unlimited": whole, "seed": given["seed"] or goal.poses.seed}
 
 
 def stated(goal: Goal, problem: Problem) -> Goal:
     """The goal with what a problem asks for; none where a file cannot say it, for loads were given."""
     if problem.loads != cases(goal.loads):
         return BY_DEFAULT
-    return goal.counting(torque=problem.objective, joints=problem.weights, only=problem.joints)
+    found = goal.counting(torque=problem.objective, joints=problem.weights, only=problem.joints)
+    poses = replace(found.poses, samples=problem.samples, seed=problem.seed, whole_turns=problem.unlimited)
+    # where nothing is asked for but other poses, there is no goal to write down
+    return replace(found, poses=poses) if replace(found, poses=Where()) or poses.chosen else BY_DEFAULT
 
 
 def motor_scale(count: Count, tree: Tree, counted: Booleans) -> Array | None:

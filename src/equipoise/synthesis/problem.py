@@ -14,9 +14,8 @@ from typing import Any
 import numpy as np
 
 from ..io import Source, loaded
-from ..kinematics import Tree
+from ..kinematics import Tree, sample
 from ..model.arrays import Array
-from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, nearest
 from ..model.goal import BY_DEFAULT, TORQUES, Goal, Torque
 from ..model.mechanism import Mechanism
@@ -26,16 +25,16 @@ from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.blocks import Block
 from .convex.counterweight_block import CounterweightBlock
 from .convex.spring_block import SpringBlock
-from .given import number
 from .goal import asked, motor_scale, stated
 from .load import OWN, Load, with_means
 from .mounts import Mounts
+from .named import Pair, counted, distinct, known, weight_of_each
 from .options import Options, option, takes
 from .region import Given, Region, given_regions
+from .states import States, chosen
 
 __all__ = ["OBJECTIVES", "Objective", "Pair", "Problem", "ProblemOptions", "Region"]
 
-Pair = tuple[str, str]
 Objective = Torque
 OBJECTIVES = TORQUES
 
@@ -155,13 +154,13 @@ class Problem:
             if value not in valid:
                 raise InputError(Fault((name,), f"unknown {name} {nearest(value, valid)}", valid))
         for body in self.regions:
-            _known(self.mechanism, "regions", (body,))
-        self._set("pairs", _distinct(_known(self.mechanism, "pairs", p) for p in self.pairs))
+            known(self.mechanism, "regions", (body,))
+        self._set("pairs", distinct(known(self.mechanism, "pairs", p) for p in self.pairs))
         if not self.pairs and not self.beside and not self.keep:
             raise InputError(Fault(("pairs",), "there is none; name at least one pair of bodies"))
         self._set("regions", given_regions(self.mechanism, self.regions, self.shape))
-        self._set("joints", None if self.joints is None else _counted(self.judged, self.joints))
-        self._set("weights", _weights(self.judged, self.weights))
+        self._set("joints", None if self.joints is None else counted(self.judged, self.joints))
+        self._set("weights", weight_of_each(self.judged, self.weights))
         self._set("loads", tuple(self.loads))
         names = [load.name for load in self.loads]
         if not names or len({*names}) < len(names):
@@ -182,9 +181,9 @@ class Problem:
         """The same problem with other attachment regions for some bodies."""
         return replace(self, regions={**self.regions, **regions})
 
-    def with_weights(self, weights: Mapping[str, float]) -> Problem:
+    def withweight_of_each(self, weights: Mapping[str, float]) -> Problem:
         """The same problem where the torque of these joints or coordinates counts by other factors."""
-        return replace(self, weights={**self.weights, **_weights(self.judged, weights)})
+        return replace(self, weights={**self.weights, **weight_of_each(self.judged, weights)})
 
     def with_poses(self, samples: int | None = None, *, seed: int = 0, unlimited: bool = False) -> Problem:
         """The same problem judged on other poses; see `ProblemOptions`."""
@@ -240,6 +239,20 @@ class Problem:
         every = np.array([weight / count for weight, count in each for _ in range(count)])
         return np.asarray(every / every.sum())
 
+    @cached_property
+    def states(self) -> States:
+        """The poses that count: those that the goal gives, else random ones inside the joint ranges."""
+        return self._chosen or States.still(sample(Tree.of(self.judged), self.count, self.seed))
+
+    @property
+    def given_poses(self) -> bool:
+        """Whether the goal gives them."""
+        return self.goal.poses.chosen
+
+    @cached_property
+    def _chosen(self) -> States | None:
+        return chosen(self.goal.poses, Tree.of(self.judged), self.count, self.seed)
+
     @property
     def count(self) -> int:
         """The number of random poses where averages are not exact."""
@@ -255,46 +268,7 @@ class Problem:
             InputError: a joint that counts has no motor that is known.
         """
         tree = Tree.of(self.judged)
-        counted = [self.joints is None or name in self.joints for name in tree.coordinates]
-        weights = np.where(counted, [self.weights.get(name, 1.0) for name in tree.coordinates], 0.0)
+        counts = [self.joints is None or name in self.joints for name in tree.coordinates]
+        weights = np.where(counts, [self.weights.get(name, 1.0) for name in tree.coordinates], 0.0)
         every = motor_scale(self.goal.count, tree, weights > 0)
         return weights * (np.where(tree.turns, 1.0, Mounts.of(self.judged).reach) if every is None else every)
-
-
-def _coordinates(mechanism: Mechanism, field: str, name: str) -> list[Coordinate]:
-    coordinates = Tree.of(mechanism).coordinates
-    own = [c for c in coordinates if name in (c, c.rpartition(".")[0])]
-    if not own:
-        raise InputError(Fault((field,), f"no independent joint {nearest(name, coordinates)}", coordinates))
-    return own
-
-
-def _counted(mechanism: Mechanism, joints: Iterable[str]) -> tuple[str, ...]:
-    found = tuple(dict.fromkeys(c for name in joints for c in _coordinates(mechanism, "joints", name)))
-    if not found:
-        raise InputError(Fault(("joints",), "no joint is named", Tree.of(mechanism).coordinates))
-    return found
-
-
-def _weights(mechanism: Mechanism, given: Mapping[str, float]) -> dict[str, float]:
-    return {
-        coordinate: number("weights", value, positive=False)
-        for name, value in given.items()
-        for coordinate in _coordinates(mechanism, "weights", name)
-    }
-
-
-def _distinct(pairs: Iterable[Pair]) -> tuple[Pair, ...]:
-    """Each pair once, whichever end is named first."""
-    return tuple({frozenset(pair): pair for pair in reversed(list(pairs))}.values())[::-1]
-
-
-def _known(mechanism: Mechanism, field: str, names: Iterable[str]) -> Pair:
-    names = tuple(names)
-    for name in names:
-        if name not in mechanism.body_names:
-            choices = mechanism.body_names
-            raise InputError(Fault((field,), f"there is no body {nearest(name, choices)}", choices))
-    if field == "pairs" and len(set(names)) != 2:
-        raise InputError(Fault((field,), f"a spring needs two different bodies, found {':'.join(names)}"))
-    return names  # type: ignore[return-value]

@@ -17,7 +17,9 @@ import numpy as np
 from ...energy.fourier.frames import Frames
 from ...energy.fourier.series import Series
 from ...kinematics import Poses, Tree, Velocities
+from ...kinematics.moving import Moving
 from ...model.arrays import Array, frozen
+from ...model.errors import InputError
 from ...model.mechanism import Mechanism
 from ..region import RIM
 
@@ -72,6 +74,18 @@ class Block(ABC):
     @abstractmethod
     def sampled(self, tree: Tree, q: Array, poses: Poses, velocities: Velocities) -> tuple[Array, Array]:
         """At configurations q (N, n): torque (N, n, unknowns) [N m or N], and energy summed over q (unknowns,) [J]."""
+
+    def driven(self, moving: Moving) -> Array:
+        """In a motion: the torque (N, n, unknowns) that moves the masses of the unknowns [N m or N].
+
+        Raises:
+            InputError: they have weight, and what moves it is not known.
+        """
+        if self.weighs:
+            raise InputError(
+                f"a motion does not go with the weights on {', '.join(self.place)}: their inertia is not known"
+            )
+        return np.zeros((*moving.q.shape, self.unknowns))
 
     @abstractmethod
     def cones(self) -> Iterable[Cone]:

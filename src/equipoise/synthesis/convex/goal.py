@@ -12,7 +12,7 @@ import numpy as np
 from ...model.arrays import Array, Integers
 from .least_squares_form import LeastSquaresForm
 from .polish import Parts, best_amounts, polish, residual
-from .semidefinite import Bound, Program, rms_program
+from .semidefinite import Bound, Program, least_rms, rms_program
 
 MANY = 8  # sets that are polished to the end; of more the better ones
 SHORT = 30  # iterations that tell which those are
@@ -71,7 +71,7 @@ class Rms(Goal):
 
     @cached_property
     def bound(self) -> Bound:
-        return self.program.solve()
+        return least_rms(self.reduced)
 
     def on(self, chosen: Sequence[int]) -> Rms:
         part = Rms(self.reduced.on(chosen))

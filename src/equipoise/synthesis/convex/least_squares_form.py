@@ -14,18 +14,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...energy.evaluate import Potential
 from ...energy.fourier.energy import gravity_series
 from ...energy.fourier.frames import MAX_TERMS, Frames, denominators
 from ...energy.fourier.series import Series
 from ...energy.reference import CHUNK_ENTRIES
-from ...kinematics import Tree, sample
+from ...kinematics import Tree
 from ...kinematics.sampling import whole_turns
 from ...model.arrays import Array, Complexes, frozen
 from ...model.errors import InputError, NoFourierForm
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress
 from ..problem import Problem
+from ..states import States, load_torque
 from .blocks import Block
 from .box_averages import MOST, is_box, mean_products
 
@@ -149,7 +149,8 @@ def _factors(problem: Problem, progress: Progress | None) -> tuple[list[Array], 
     factors: list[Array] = []
     energy, averaged = np.zeros(0), False
     for loaded in together(problem):
-        rows = None if problem.samples is not None else _averages(problem, loaded)
+        drawn = problem.samples is not None or problem.given_poses
+        rows = None if drawn else _averages(problem, loaded)
         averaged = rows is not None
         R, energy = rows or _samples(problem, loaded, progress)
         unknowns = R.shape[1] - len(loaded)
@@ -204,17 +205,17 @@ def _load(frames: Frames) -> Series:
 
 
 def _samples(problem: Problem, loaded: Sequence[Mechanism], progress: Progress | None) -> tuple[Array, Array]:
-    blocks, count = problem.blocks, problem.count
+    blocks, states = problem.blocks, problem.states
     width = sum(block.unknowns for block in blocks) + len(loaded)
     R, mean, done = np.zeros((0, width)), np.zeros(width - len(loaded)), 0
-    q = sample(Tree.of(problem.judged), count, problem.seed)
-    for torque, loads, energy in torque_rows(blocks, loaded, q):
-        rows = np.concatenate([torque, loads], axis=-1) * problem.scale[:, None] / np.sqrt(count)
+    for torque, loads, energy in torque_rows(blocks, loaded, states):
+        part = np.sqrt(states.share[done : done + len(torque)])[:, None, None]
+        rows = np.concatenate([torque, loads], axis=-1) * problem.scale[:, None] * part
         R = _triangle(np.vstack([R, rows.reshape(-1, width)]))
-        mean += energy / count
+        mean += energy / len(states)
         done += len(torque)
         if progress:
-            progress("reducing samples", done / count)
+            progress("reducing samples", done / len(states))
     return R, mean
 
 
@@ -223,26 +224,29 @@ def _triangle(rows: Array) -> Array:
     return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
-def torque_rows(blocks: Sequence[Block], loaded: Sequence[Mechanism], q: Array) -> Iterator[tuple[Array, Array, Array]]:
-    """Torques at `q` (N, n) as linear functions of the unknowns, in chunks of configurations.
+def torque_rows(
+    blocks: Sequence[Block], loaded: Sequence[Mechanism], states: States
+) -> Iterator[tuple[Array, Array, Array]]:
+    """Torques at N states as linear functions of the unknowns, in chunks of configurations.
 
     Args:
         loaded: the mechanism under loads that make no difference to what the unknowns do, see `together`.
 
     Yields:
-        (chunk, n, all unknowns) torque of each unknown, (chunk, n, loads) torque of gravity and present springs [N m or
-        N], and (all unknowns,) the sum over the chunk of each unknown's energy [J].
+        (chunk, n, all unknowns) torque of each unknown, (chunk, n, loads) torque of gravity, present springs and what
+        moves [N m or N], and (all unknowns,) the sum over the chunk of each unknown's energy [J].
     """
     tree = Tree.of(loaded[0])
-    loads = [Potential(mechanism) for mechanism in loaded]
     places = _places([block.unknowns for block in blocks])
     width = sum(block.unknowns for block in blocks)
     size = max(1, CHUNK_ENTRIES // max(1, tree.n * width))
-    for start in range(0, len(q), size):
-        chunk = q[start : start + size]
-        poses = tree.poses(chunk)
-        velocities = tree.velocities(chunk, poses)
+    for part in states.chunks(size):
+        chunk, moving = part.q, part.moving(tree)
+        poses = tree.poses(chunk) if moving is None else moving.poses
+        velocities = tree.velocities(chunk, poses) if moving is None else moving.velocities
         torque, energy = np.empty((len(chunk), tree.n, width)), np.empty(width)
         for block, place in zip(blocks, places, strict=True):
             torque[..., place], energy[place] = block.sampled(tree, chunk, poses, velocities)
-        yield torque, np.stack([load(chunk).torque for load in loads], axis=-1), energy
+            if moving is not None:
+                torque[..., place] += block.driven(moving)
+        yield torque, np.stack([load_torque(mechanism, part, moving) for mechanism in loaded], axis=-1), energy

@@ -136,13 +136,15 @@ def _weights_alone(reduced: LeastSquaresForm, parts: Parts) -> Design:
         residual=float(left),
         unbalanced=goal.unit,
         averaged=averaged,
-        samples=None if averaged else reduced.problem.count,
+        samples=None if averaged else len(reduced.problem.states),
         loads=loads,
     )
 
 
 def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None = None) -> Design:
     """Springs, on a mechanism that has its weights."""
+    if options.exact and problem.given_poses:
+        raise InputError(Fault(("exact",), "is about all poses, and the goal gives some"))
     reduced = _worth_solving(build(problem, options.progress))
     goal = Peak.of(reduced) if problem.objective == "peak" else Rms(reduced)
     search = SpringSearch(goal, options.springs or SPRINGS_TRIED, options.seed, options.progress or silent)
@@ -151,7 +153,8 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
     bound = _bound(goal)
     least = bound if isinstance(goal, Rms) else _bound(Rms(reduced))  # exact or not: the mean square tells best
     possible, asked_less = least is None or least < FEASIBLE, weights is not None and weights.share > 0
-    infeasible = None if least is None or possible or asked_less else infeasible_on(reduced, least)
+    stated = least is None or possible or asked_less or problem.given_poses
+    infeasible = None if stated else infeasible_on(reduced, least)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
     found = _found(search, options.springs is None)
@@ -167,9 +170,9 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
         unbalanced=goal.unit,
         bound=bound,
         averaged=averaged,
-        samples=None if averaged else problem.count,
+        samples=None if averaged else len(problem.states),
         free_parameters=_free(problem, options),
-        exact_feasible=None if least is None else possible,
+        exact_feasible=None if least is None or problem.given_poses else possible,
         infeasible=infeasible,
         loads=load_residuals(goal, found.parts),
         front=tuple(_rows(search)) if options.front else (),

@@ -19,11 +19,12 @@ from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
 from ..load import Load, extremes
 from ..problem import Problem
+from ..states import States
 from .blocks import Block
 from .goal import Goal
 from .least_squares_form import LeastSquaresForm, torque_rows
 from .polish import Parts, best_amounts, jacobian, polish, residual
-from .semidefinite import Bound, Program, peak_program
+from .semidefinite import Bound, Program, least, peak_program
 
 FIRST = 600  # rows (pose and coordinate) of the first round
 CUTS = 100  # rows added per round
@@ -69,13 +70,13 @@ class Peak(Goal):
             message = "the largest torque over a cone of tilts is not known for parts that have weight; rms is"
             raise InputError(Fault(("tilt",), message))
         to_w = np.linalg.pinv(np.concatenate(reduced.columns, axis=1))
-        q = peak_poses(Tree.of(problem.judged), problem.count, problem.seed)
+        states = peak_states(problem)
         L, low, high = [], [], []
         each: list[tuple[slice, Array, Array]] = []
         start = 0
         for loads in [(load,) for load in problem.loads] if weighty else [problem.loads]:
             rows, ends = [], []
-            for T, torque in torque_ends(reduced.blocks, loads, problem.judged, q):
+            for T, torque in torque_ends(reduced.blocks, loads, problem.judged, states):
                 rows.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(reduced.d)))
                 ends.append((torque * problem.scale[:, None, None]).reshape(-1, len(loads), 2))
             L.append(np.concatenate(rows))
@@ -119,8 +120,8 @@ class Peak(Goal):
     def program(self) -> Program:
         return self._program(self._rows)
 
-    def _program(self, rows: Booleans) -> Program:
-        return peak_program(self.reduced, self.L[rows], self.low[rows], self.high[rows])
+    def _program(self, rows: Booleans, stretch: float = 1.0) -> Program:
+        return peak_program(self.reduced, self.L[rows], self.low[rows], self.high[rows], stretch)
 
     @cached_property
     def bound(self) -> Bound:
@@ -143,7 +144,9 @@ class Peak(Goal):
                 break
             chosen[np.argsort(-size)[:CUTS]] = True
             best = self._program(chosen).solve()
-        return chosen, best
+        return chosen, least(lambda stretch: self._program(chosen, stretch)) if self._program(chosen).far(
+            best
+        ) else best
 
     def improve(self, parts: Parts) -> tuple[Parts, Array]:
         """Of the most promising of them, as they are and polished for the mean square."""
@@ -214,14 +217,14 @@ class Peak(Goal):
 
 def largest(problem: Problem) -> float:
     """[N m] the largest torque of what stays, without any parts; see `Peak`."""
-    q = peak_poses(Tree.of(problem.judged), problem.count, problem.seed)
-    ends = (torque for _, torque in torque_ends((), problem.loads, problem.judged, q))
+    states = peak_states(problem)
+    ends = (torque for _, torque in torque_ends((), problem.loads, problem.judged, states))
     scale = problem.scale[:, None, None]
     return max(float(np.abs(scale * one).max(initial=0.0)) for one in ends)
 
 
 def torque_ends(
-    blocks: Sequence[Block], loads: Sequence[Load], mechanism: Mechanism, q: Array
+    blocks: Sequence[Block], loads: Sequence[Load], mechanism: Mechanism, states: States
 ) -> Iterator[tuple[Array, Array]]:
     """As `torque_rows`, in chunks: torque of each unknown, and the least and largest of each load (..., loads, 2)."""
     loaded, places = [], []
@@ -230,7 +233,7 @@ def torque_ends(
         gravities = [upright.gravity] if not load.tilt else [vec3(g) for g in (np.zeros(3), *np.eye(3))]
         places.append((load, upright.gravity, len(loaded)))
         loaded += [replace(upright, gravity=g) for g in gravities]
-    for T, torque, _ in torque_rows(blocks, loaded, q):
+    for T, torque, _ in torque_rows(blocks, loaded, states):
         ends = []
         for load, g, i in places:
             still = torque[..., i]
@@ -239,6 +242,13 @@ def torque_ends(
                 low, high = extremes(torque[..., i + 1 : i + 4] - still[..., None], np.array(g), load.tilt)
             ends.append(np.stack([still + low, still + high], axis=-1))
         yield T, np.stack(ends, axis=-2)
+
+
+def peak_states(problem: Problem) -> States:
+    """Where the largest torque is looked for."""
+    if problem.given_poses:
+        return problem.states
+    return States.still(peak_poses(Tree.of(problem.judged), problem.count, problem.seed))
 
 
 def peak_poses(tree: Tree, count: int, seed: int) -> Array:

@@ -6,7 +6,7 @@ is a lower bound for every design on these blocks.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from math import isqrt
 from typing import Any
@@ -19,6 +19,7 @@ from .least_squares_form import LeastSquaresForm
 
 LINEAR = ("zero", "nonnegative")
 FINE, COARSE = 1e-9, 1e-6  # tolerances of a bound, and of where parts are looked for
+LARGE, STRETCH = 100.0, 1000.0  # unknowns so large want other units; how much larger these are
 SAFE = 10.0  # times what the solver still violates: so far its optimum may be off
 STALLED = 1e-4  # violation of the constraints that is still close to the optimum
 
@@ -40,12 +41,12 @@ class Bound:
 class Program:
     """The blocks' unknowns in their cones, and `extra` more at the end; then rows ``b - A x`` in cones of their own.
 
-    Each block's unknowns are in a unit that makes its columns of size one.
+    Each block's unknowns are in a unit that makes its columns of size one, `stretch` times as large.
     """
 
-    def __init__(self, reduced: LeastSquaresForm, extra: int) -> None:
+    def __init__(self, reduced: LeastSquaresForm, extra: int, stretch: float = 1.0) -> None:
         self.reduced = reduced
-        self.scale = [1 / max(float(np.linalg.norm(own, axis=(0, 1))), 1e-300) for own in reduced.columns]
+        self.scale = [stretch / max(float(np.linalg.norm(own, axis=(0, 1))), 1e-300) for own in reduced.columns]
         self.starts = np.cumsum([0, *(block.unknowns for block in reduced.blocks)]).tolist()
         self.width = self.starts[-1] + extra
         self.columns = [  # as pieces of rows
@@ -90,6 +91,11 @@ class Program:
         violation = self._violation(solution)
         least = min(solution.obj_val, solution.obj_val_dual) - SAFE * violation
         return Bound(max(0.0, least), self._unknowns(solution))
+
+    def far(self, found: Bound) -> bool:
+        """Whether an unknown is far beyond the program's units."""
+        each = (np.abs(own / scale).max(initial=0.0) for own, scale in zip(found.x, self.scale, strict=True))
+        return max(each, default=0.0) > LARGE
 
     def priced(self, weights: Sequence[Array]) -> tuple[Array, ...]:
         """The unknowns in the program's units that minimise the last unknown plus weights times those of each block.
@@ -150,14 +156,34 @@ class Program:
         return clarabel.DefaultSolver(sparse.csc_matrix((n, n)), objective, A, b, self.cones, settings)
 
 
+def least(make: Callable[[float], Program]) -> Bound:
+    """The optimum of a program, given its stretch.
+
+    Where it is so flat that unknowns far beyond their units are best, a solver stops above it: then it is solved again
+    in larger units, and the lesser optimum counts.
+
+    Raises:
+        EquipoiseError: the solver stopped far from the optimum.
+    """
+    program = make(1.0)
+    found = program.solve()
+    if not program.far(found):
+        return found
+    try:
+        again = make(STRETCH).solve()
+    except EquipoiseError:
+        return found
+    return min(found, again, key=lambda bound: bound.value)
+
+
 def least_rms(reduced: LeastSquaresForm) -> Bound:
     """The bound for the root mean square torque of all joints together (rest included)."""
-    return rms_program(reduced).solve()
+    return least(lambda stretch: rms_program(reduced, stretch))
 
 
-def rms_program(reduced: LeastSquaresForm) -> Program:
+def rms_program(reduced: LeastSquaresForm, stretch: float = 1.0) -> Program:
     """The program whose optimum is the least root mean square torque."""
-    program = Program(reduced, extra=1)
+    program = Program(reduced, 1, stretch)
     t = program.width - 1
     norm = np.concatenate([[0.0], reduced.d, [reduced.rest]])
     columns = [(1, start, -own) for _, start, own in program.columns]
@@ -165,14 +191,14 @@ def rms_program(reduced: LeastSquaresForm) -> Program:
     return program
 
 
-def peak_program(reduced: LeastSquaresForm, L: Array, low: Array, high: Array) -> Program:
+def peak_program(reduced: LeastSquaresForm, L: Array, low: Array, high: Array, stretch: float = 1.0) -> Program:
     """The program whose optimum is the least of the largest torques, see `Peak`, with ``w = reduced.times(x)``.
 
     Args:
         L: (rows, len(w)), low, high: (rows,): torques from ``L w + low`` to ``L w + high``, as shares of any unit.
     """
     r = L.shape[1]
-    program = Program(reduced, extra=r + 1)  # w, and the peak t
+    program = Program(reduced, r + 1, stretch)  # w, and the peak t
     w, t = program.width - r - 1, program.width - 1
     program.add("zero", np.zeros(r), [*program.columns, (0, w, -np.eye(r))])
     for sign, load in ((1.0, high), (-1.0, low)):
