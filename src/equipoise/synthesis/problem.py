@@ -181,7 +181,7 @@ class Problem:
         """The same problem with other attachment regions for some bodies."""
         return replace(self, regions={**self.regions, **regions})
 
-    def withweight_of_each(self, weights: Mapping[str, float]) -> Problem:
+    def with_weights(self, weights: Mapping[str, float]) -> Problem:
         """The same problem where the torque of these joints or coordinates counts by other factors."""
         return replace(self, weights={**self.weights, **weight_of_each(self.judged, weights)})
 
