@@ -26,6 +26,9 @@ if TYPE_CHECKING:  # a verdict waits for no method
     from ..synthesis.method import Method
 
 
+BEST = 1e-3  # of the unbalanced torque: a design that is so near its bound is as good as any
+
+
 def console(stderr: bool = False) -> Console:
     """A console that never cuts a table: at least 120 columns when the output is not a terminal."""
     plain = Console(stderr=stderr, highlight=False)
@@ -123,25 +126,33 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     from ..synthesis.score import Terms
 
     method = METHODS[design.method]
-    share = design.residual / design.unbalanced
     which = "all joints" if design.joints is None else ", ".join(design.joints)
     terms = Terms.of(design.goal.count)
-    yield Text(f"method {design.method}, objective {design.objective} torque of {which}", style="bold")
-    ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
-    where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
-    where = design.goal.poses.where(design.samples or 0) if design.goal.poses.chosen else where
-    yield Text(f"  unbalanced  {terms.show(design.unbalanced)}  ({where})")
     floor = EXACT * design.unbalanced
+    gap = design.certified_gap
 
     def left(value: float) -> str:
         return f"{torque(value, floor)} N m" if terms.unit == "N m" else terms.show(value)
 
-    yield Text(f"  residual    {left(design.residual)}  = {percent(share)} of unbalanced")
-    if design.bound is not None and design.certified_gap is not None:
+    count = _count(design.mechanism.springs, "spring")
+    leave = "leaves" if len(design.mechanism.springs) == 1 else "leave"
+    if design.residual < floor:
+        what = f"nothing of {terms.show(design.unbalanced)}"
+    else:
+        share = percent(design.residual / design.unbalanced)
+        what = f"{left(design.residual)} of {terms.show(design.unbalanced)}, {share}"
+    best = gap is not None and gap <= BEST
+    colour = " green" if best else "" if gap is None else " yellow"  # a design that nothing can beat is good news
+    yield Text(f"{design.mechanism.name}: {count} {leave} {what}", style=f"bold{colour}")
+    ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
+    where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
+    where = design.goal.poses.where(design.samples or 0) if design.goal.poses.chosen else where
+    yield Text(f"  counted     {design.objective} torque of {which} over {where}; method {design.method}")
+    if design.bound is not None and gap is not None:
         least = f"{left(design.bound)}  = {percent(design.bound / design.unbalanced)}"
-        gap = f"gap {percent(design.certified_gap)} of unbalanced"
         why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
-        yield Text(f"  bound       {least}: {why}; {gap}")
+        won = "so these are the best possible" if best else f"so at most {percent(gap)} of the torque can still be won"
+        yield Text(f"  bound       {least}: {why}, {won}")
     if design.counterweights is not None:
         yield from weight_lines(design.counterweights, design.unbalanced)
     if design.by_chance:
