@@ -7,15 +7,17 @@ the profile can be cut and its cable stays on it (`search`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ...model.elements import JointElement
+from ...model.elements import Element, JointElement
+from ...model.elements.laws import Cam
 from ...model.elements.laws.comparison import Comparison
 from ...model.elements.laws.profile import Profile
-from ...model.errors import Fault, InfeasibleError, InputError
+from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
 from ...model.names import Names
 from ...model.progress import silent
@@ -24,10 +26,11 @@ from ..given import number
 from ..method import Method
 from ..options import takes
 from .make import made
-from .options import CamOptions, between, terms, wishes_of
+from .options import CamOptions, between, wishes_of
 from .search import PARTS, Search, Wishes, usable
 from .springs import Offer
-from .wanted import Wanted, wanted
+from .terms import terms
+from .wanted import Wanted, of_law, wanted
 
 BIAS = 1.25  # of half the largest torque: what two sides pull against each other with
 
@@ -46,21 +49,46 @@ def design(mechanism: Mechanism, options: CamOptions) -> Design:
         choices = CamOptions.parameters()[name].choices
         if getattr(options, name) not in choices:
             raise InputError(Fault((name,), f"unknown value '{getattr(options, name)}'", choices))
+    if options.of is not None:
+        return _of_a_cam(mechanism, options.of, options)
     load = mechanism if options.keep else mechanism.with_springs(())
-    joints, progress = terms(mechanism, options.joint), options.progress or silent
+    joints = terms(mechanism, options.joint)
     whole = wanted(load, joints, between(options))
     half = BIAS * whole.peak / 2
     parts = [whole] if options.sides == "one" else [whole.plus(half, 0.5), whole.plus(-half, 0.5)]
-    names, cams, chosen = Names(spring.name for spring in load.springs), [], []
-    wishes = wishes_of(load, joints, options)
+    names, cams = Names(spring.name for spring in load.springs), []
+    for part, found in zip(parts, _each(parts, load, options), strict=True):
+        name = names.new(f"{'-'.join(name for name, _ in joints)} cam")
+        cams.append((JointElement(name, joints, replace(part.law, made=found.profile)), found))
+    return _designed(load.with_springs((*load.springs, *(cam for cam, _ in cams))), cams, options)
+
+
+def _of_a_cam(mechanism: Mechanism, name: str, options: CamOptions) -> Design:
+    """A cam of the mechanism with its profile."""
+    known = {spring.name: spring for spring in mechanism.springs if isinstance(spring.law, Cam)}
+    if name not in known:
+        raise InputError(Fault(("of",), f"there is no cam {nearest(name, known)}", tuple(known)))
+    cam = known[name]
+    part = of_law(mechanism, cam.joints, cam.law, between(options))
+    (found,) = _each([part], mechanism, options)
+    done = cam.changed(law=replace(cam.law, made=found.profile))
+    springs = [done if spring is cam else spring for spring in mechanism.springs]
+    return _designed(mechanism.with_springs(springs), [(done, found)], options)
+
+
+def _each(parts: list[Wanted], load: Mechanism, options: CamOptions) -> Iterator[Found]:
+    progress = options.progress or silent
+    wishes = wishes_of(load, parts[0].joints, options)
     for i, part in enumerate(parts):
         progress("looking for springs", i / len(parts))
-        found = _best(part, wishes, options)
-        law = replace(part.law, made=found.profile)
-        cams.append(JointElement(names.new(f"{'-'.join(name for name, _ in joints)} cam"), joints, law))
-        chosen.append({**found.numbers, "cam": cams[-1].name})
-    free = {"joint": dict(joints), "follower": options.follower, "sides": options.sides, "keep": options.keep}
-    return Design.of(load.with_springs((*load.springs, *cams)), "cam", {**free, "cams": chosen})
+        yield _best(part, wishes, options)
+
+
+def _designed(mechanism: Mechanism, cams: list[tuple[Element, Found]], options: CamOptions) -> Design:
+    (first, _), *_ = cams
+    free = {"joint": dict(first.joints), "follower": options.follower, "sides": options.sides, "keep": options.keep}
+    chosen = [{"cam": cam.name, **found.numbers} for cam, found in cams]
+    return Design.of(mechanism, "cam", {**free, "cams": chosen})
 
 
 @dataclass(frozen=True)

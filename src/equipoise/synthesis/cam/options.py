@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import atan2, hypot, nan, pi
@@ -13,7 +12,7 @@ from ...kinematics import Tree
 from ...model.elements.laws.law import Terms
 from ...model.elements.laws.profile import FIXED_TO
 from ...model.elements.plane import Plane
-from ...model.errors import Fault, InputError, nearest
+from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
 from ...model.units import Amount, quantity
 from ..given import number
@@ -33,6 +32,7 @@ class CamOptions(MethodOptions):
 
     Attributes:
         joint: the joint, or a sum such as "shoulder+elbow" or "hip-2*knee"; the only one where there is only one.
+        of: the name of a cam of the file: it gets its profile, and nothing else changes.
         keep: the file's own springs stay and count as a load; else they are replaced.
         follower: a cable on a pulley, or a roller on a cam.
         sides: "two" are two pulleys with a spring each that pull against each other.
@@ -52,6 +52,9 @@ class CamOptions(MethodOptions):
     """
 
     joint: str | Mapping[str, float] | None = option(None, "text", "the joint, or a sum such as shoulder+elbow")
+    of: str | None = option(
+        None, "text", "a cam of the file that gets its profile; all else stays"
+    )
     keep: bool = False
     follower: str = option("cable", "text", "what runs on the profile (default cable)", FOLLOWERS)
     sides: str = option("one", "text", "two: a second pulley and spring pull against the first", SIDES)
@@ -79,29 +82,6 @@ class CamOptions(MethodOptions):
         None, "angle", "low,high: angles that count (default the joint's)", many=True
     )
     seed: int = option(0, "whole", "of the search (default 0)")
-
-
-def terms(mechanism: Mechanism, joint: str | Mapping[str, float] | None) -> Terms:
-    """(name, ratio) of each joint of a sum: "hip-2*knee" or a mapping; the only hinge where there is only one.
-
-    Raises:
-        InputError: it is no such sum, or there are several hinges and none is named.
-    """
-    hinges = [j.name for j in mechanism.joints if j.type == "revolute"]
-    if joint is None:
-        if len(hinges) != 1:
-            raise InputError(Fault(("joint",), "which joint is the cam for?", tuple(hinges)))
-        return ((hinges[0], 1.0),)
-    if not isinstance(joint, str):
-        return tuple((name, number("joint", ratio, positive=None)) for name, ratio in joint.items())
-    if joint in hinges:
-        return ((joint, 1.0),)
-    names = "|".join(re.escape(name) for name in sorted(hinges, key=len, reverse=True))
-    part = rf"\s*([+-]?)\s*(?:(\d*\.?\d+)\s*\*?\s*)?({names})\s*(?=[+-]|$)"
-    if not hinges or not re.fullmatch(f"(?:{part})+", joint):
-        raise InputError(Fault(("joint",), f"no revolute joint {nearest(joint, hinges)}", tuple(hinges)))
-    signs = {"-": -1.0}
-    return tuple((name, signs.get(sign, 1.0) * float(ratio or 1)) for sign, ratio, name in re.findall(part, joint))
 
 
 def between(options: CamOptions) -> tuple[float, float] | None:

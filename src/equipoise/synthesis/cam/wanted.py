@@ -17,15 +17,16 @@ from ...kinematics import Tree, sample
 from ...kinematics.sampling import bounds
 from ...model.arrays import Array, frozen
 from ...model.elements import JointElement
-from ...model.elements.laws import Cam
+from ...model.elements.laws import Cam, Law
 from ...model.elements.laws.law import Terms
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
 
-DEGREE_ALONE, DEGREE = 30, 14
-"""Of the polynomials where the angle alone decides, and where other joints scatter the torque."""
+DEGREE_ALONE, DEGREE, DEGREE_OF_LAW = 30, 14, 40
+"""Of the polynomials where the angle alone decides, where other joints scatter the torque, and for a given law."""
 ALONE = 1025  # angles where it does
 NOISE = 1e-13
+ROUNDING = 1e-28  # share of a sum of squares
 HARMONICS = 3
 EXACT = 1e-9  # share of the torque up to which a series is the torque itself
 
@@ -91,15 +92,9 @@ def wanted(mechanism: Mechanism, joints: Terms, between: tuple[float, float] | N
     Raises:
         InputError: no such joint, nothing to balance, or a range of a turn or more.
     """
-    angle = JointElement("cam", joints, Cam(cosine=(1.0,)))
-    if faults := [fault for fault in angle.faults(mechanism) if "cosine" not in fault.path]:
-        raise InputError([Fault(("joint",), fault.message, fault.choices) for fault in faults])
-    tree = Tree.of(mechanism)
+    angle, tree = _angle(mechanism, joints), Tree.of(mechanism)
     q, psi, J = _poses(tree, angle)
-    low, high = between or (float(psi.min()), float(psi.max()))
-    if high - low > 2 * np.pi - 0.1:
-        what = "angles over a turn or more" if between else "a range of a turn or more"
-        raise InputError(Fault(("joint",), f"'{angle.where}' has {what}, and a profile has less: give 'range'"))
+    low, high = _ends(angle, psi, between)
     inside = (psi >= low - 1e-9) & (psi <= high + 1e-9)
     if inside.sum() < 2 * DEGREE:
         raise InputError(Fault(("range",), f"'{angle.where}' is hardly ever between {low:.4g} and {high:.4g} rad"))
@@ -108,12 +103,55 @@ def wanted(mechanism: Mechanism, joints: Terms, between: tuple[float, float] | N
     degree = DEGREE_ALONE if tree.n == 1 else DEGREE
     rows = np.polynomial.chebyshev.chebvander((2 * psi - low - high) / (high - low), degree)
     A = (J[:, :, None] * rows[:, None, :]).reshape(-1, degree + 1)
-    found, *_ = np.linalg.lstsq(A, -load.ravel(), rcond=None)
+    found = _regression(A, -load.ravel())
     found[np.abs(found) < NOISE * np.abs(found).max(initial=0)] = 0.0
     torque = Chebyshev(found, domain=[low, high])
     if not np.abs(found).max() > 1e-9 * max(float(np.abs(load).max(initial=0)), 1e-12):
         raise InputError(Fault(("joint",), f"'{angle.where}' carries no torque that goes with its angle"))
     return Wanted(joints, low, high, torque)
+
+
+def _regression(A: Array, b: Array) -> Array:
+    """The coefficients (columns,) of so many first columns of A as the data speak for, the rest 0.
+
+    By the Bayesian information criterion: what scatters with the other joints is no reason for a wavy torque.
+    """
+    Q, R = np.linalg.qr(A)
+    along = Q.T @ b
+    total = float(b @ b) or 1.0
+    left = np.maximum(total - np.cumsum(along**2), ROUNDING * total)
+    used = np.arange(1, len(along) + 1)
+    count = int(used[np.argmin(len(b) * np.log(left / len(b)) + used * np.log(len(b)))])
+    found = np.zeros(len(along))
+    found[:count] = np.linalg.solve(R[:count, :count], along[:count])
+    return found
+
+
+def of_law(mechanism: Mechanism, joints: Terms, law: Law, between: tuple[float, float] | None = None) -> Wanted:
+    """The energy that an element on joints has.
+
+    Raises:
+        InputError: as `wanted`.
+    """
+    angle, tree = _angle(mechanism, joints), Tree.of(mechanism)
+    low, high = _ends(angle, _poses(tree, angle)[1], between)
+    return Wanted(joints, low, high, Chebyshev.interpolate(law.pull, DEGREE_OF_LAW, domain=[low, high]))
+
+
+def _angle(mechanism: Mechanism, joints: Terms) -> JointElement:
+    angle = JointElement("cam", joints, Cam(cosine=(1.0,)))
+    if faults := [fault for fault in angle.faults(mechanism) if "cosine" not in fault.path]:
+        raise InputError([Fault(("joint",), fault.message, fault.choices) for fault in faults])
+    return angle
+
+
+def _ends(angle: JointElement, psi: Array, between: tuple[float, float] | None) -> tuple[float, float]:
+    """The angles that count [rad]."""
+    low, high = between or (float(psi.min()), float(psi.max()))
+    if high - low > 2 * np.pi - 0.1:
+        what = "angles over a turn or more" if between else "a range of a turn or more"
+        raise InputError(Fault(("joint",), f"'{angle.where}' has {what}, and a profile has less: give 'range'"))
+    return low, high
 
 
 def _poses(tree: Tree, angle: JointElement) -> tuple[Array, Array, Array]:

@@ -23,6 +23,7 @@ from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
 from .block_sets import FEASIBLE
+from .cam_block import CamBlock
 from .candidates import front_row, load_residuals, with_parts
 from .counterweight_block import CounterweightBlock
 from .few_springs import ROUNDING_SHARE, SpringSearch, SpringSet
@@ -259,6 +260,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
         "objective": problem.objective,
         "joints": None if problem.joints is None else list(problem.joints),
         **({"weights": dict(problem.weights)} if problem.weights else {}),
+        **_cams(problem),
         **({"loads": [load.to_dict() for load in problem.loads]} if problem.loads != (OWN,) else {}),
         "samples": problem.samples,
         "unlimited": problem.unlimited,
@@ -271,6 +273,11 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
 def _weighed(problem: Problem, options: SolverOptions) -> dict[str, Any]:
     radii = {block.body: block.radius for block in problem.beside if isinstance(block, CounterweightBlock)}
     return {"counterweights": radii, "residual": options.residual} if radii else {}
+
+
+def _cams(problem: Problem) -> dict[str, Any]:
+    found = [block.place[0] for block in problem.beside if isinstance(block, CamBlock)]
+    return {"cams": found} if found else {}
 
 
 METHOD = Method(
