@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arrays import Array, vec3
 from .element import End
@@ -86,25 +87,36 @@ def outline(made: Profile, tree: Tree, joints: Terms) -> tuple[End | Track, ...]
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(rim, axis=0).T))])
     near = np.array([length[np.argmin(np.hypot(*(rim - p).T))] for p in contact])
 
+    # on a sum of joints nothing of the mechanism turns by it: it is drawn as if on the first joint
+    own = joints == ((joints[0][0], 1.0),)
+
     def track(body: str, flat: Array) -> Track:
-        return Track(names[body], joints, angles, plane.points(body, flat))
+        if own or body == "parent":
+            return Track(names[body], joints, angles, plane.points(body, flat))
+        x, y = np.broadcast_to(flat, (STEPS, 2)).T
+        turned = np.stack([np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y], axis=1)
+        return Track(plane.parent, joints, angles, plane.points("parent", turned))
 
     around = [
         track(made.fixed_to, np.stack([np.interp((near + share * length[-1]) % length[-1], length, column)
                                        for column in rim.T], axis=1))
         for share in np.linspace(0, 1, AROUND)
     ]  # fmt: skip
+
+    def fixed(flat: ArrayLike) -> End | Track:
+        if own or other == "parent":
+            return names[other], vec3(plane.points(other, flat)[0])
+        return track(other, np.asarray(flat, float))
+
     if made.cable is not None:
-        start: list[End | Track] = [(names[other], vec3(plane.points(other, made.cable.point)[0]))]
-        return (*start, track(made.fixed_to, contact), *around)
+        return (fixed(made.cable.point), track(made.fixed_to, contact), *around)
     assert made.roller is not None
     u = np.array([np.cos(made.roller.direction), np.sin(made.roller.direction)])
     left = made.roller.offset * np.array([-u[1], u[0]])
     height = np.interp(angles, run.angle, run.free)
     centre = height[:, None] * u + left
     rolls = [track(other, centre + made.roller.radius * np.array([np.cos(t), np.sin(t)])) for t in ROUND]
-    seat = plane.points(other, made.roller.seat * u + left)[0]
-    return ((names[other], vec3(seat)), *rolls, track(made.fixed_to, contact), *around)
+    return (fixed(made.roller.seat * u + left), *rolls, track(made.fixed_to, contact), *around)
 
 
 def _hull(points: Array) -> Array:

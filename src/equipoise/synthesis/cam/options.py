@@ -52,9 +52,7 @@ class CamOptions(MethodOptions):
     """
 
     joint: str | Mapping[str, float] | None = option(None, "text", "the joint, or a sum such as shoulder+elbow")
-    of: str | None = option(
-        None, "text", "a cam of the file that gets its profile; all else stays"
-    )
+    of: str | None = option(None, "text", "a cam of the file that gets its profile; all else stays")
     keep: bool = False
     follower: str = option("cable", "text", "what runs on the profile (default cable)", FOLLOWERS)
     sides: str = option("one", "text", "two: a second pulley and spring pull against the first", SIDES)

@@ -94,7 +94,7 @@ def wanted(mechanism: Mechanism, joints: Terms, between: tuple[float, float] | N
     """
     angle, tree = _angle(mechanism, joints), Tree.of(mechanism)
     q, psi, J = _poses(tree, angle)
-    low, high = _ends(angle, psi, between)
+    low, high = _ends(tree, angle, between)
     inside = (psi >= low - 1e-9) & (psi <= high + 1e-9)
     if inside.sum() < 2 * DEGREE:
         raise InputError(Fault(("range",), f"'{angle.where}' is hardly ever between {low:.4g} and {high:.4g} rad"))
@@ -119,7 +119,9 @@ def _regression(A: Array, b: Array) -> Array:
     Q, R = np.linalg.qr(A)
     along = Q.T @ b
     total = float(b @ b) or 1.0
-    left = np.maximum(total - np.cumsum(along**2), ROUNDING * total)
+    rest = b - Q @ along
+    beyond = np.append(np.cumsum(along[:0:-1] ** 2)[::-1], 0.0)  # without cancellation
+    left = np.maximum(rest @ rest + beyond, ROUNDING * total)
     used = np.arange(1, len(along) + 1)
     count = int(used[np.argmin(len(b) * np.log(left / len(b)) + used * np.log(len(b)))])
     found = np.zeros(len(along))
@@ -134,7 +136,7 @@ def of_law(mechanism: Mechanism, joints: Terms, law: Law, between: tuple[float, 
         InputError: as `wanted`.
     """
     angle, tree = _angle(mechanism, joints), Tree.of(mechanism)
-    low, high = _ends(angle, _poses(tree, angle)[1], between)
+    low, high = _ends(tree, angle, between)
     return Wanted(joints, low, high, Chebyshev.interpolate(law.pull, DEGREE_OF_LAW, domain=[low, high]))
 
 
@@ -145,13 +147,24 @@ def _angle(mechanism: Mechanism, joints: Terms) -> JointElement:
     return angle
 
 
-def _ends(angle: JointElement, psi: Array, between: tuple[float, float] | None) -> tuple[float, float]:
+def _ends(tree: Tree, angle: JointElement, between: tuple[float, float] | None) -> tuple[float, float]:
     """The angles that count [rad]."""
-    low, high = between or (float(psi.min()), float(psi.max()))
+    low, high = between or _reached(tree, angle)
     if high - low > 2 * np.pi - 0.1:
         what = "angles over a turn or more" if between else "a range of a turn or more"
         raise InputError(Fault(("joint",), f"'{angle.where}' has {what}, and a profile has less: give 'range'"))
     return low, high
+
+
+def _reached(tree: Tree, angle: JointElement) -> tuple[float, float]:
+    """The least and the largest sum of angles inside the joints' ranges [rad]."""
+    if tree.mechanism.loops:
+        psi = _poses(tree, angle)[1]
+        return float(psi.min()), float(psi.max())
+    rows, ratios = [tree.rows[joint] for joint, _ in angle.joints], np.array([ratio for _, ratio in angle.joints])
+    c, (lower, upper) = ratios @ tree.C[rows], bounds(tree)
+    middle, half = float(ratios @ tree.s0[rows] + c @ (lower + upper) / 2), float(np.abs(c) @ (upper - lower) / 2)
+    return middle - half, middle + half
 
 
 def _poses(tree: Tree, angle: JointElement) -> tuple[Array, Array, Array]:
