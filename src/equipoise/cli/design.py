@@ -174,8 +174,9 @@ def design(
             raise InputError(f"--{name} and --set {name} both give '{name}': leave out one of them")
         given |= more
     real = realise is not None or (stock is not None and method != "cam")
-    given |= options.for_cam(method, joint, None if real else stock)
-    goes_with = [f"--{name.replace('_', '-')}" for name in buildable.ONLY if not real and terminal.typed(context, name)]
+    given |= options.for_cam(method, joint, None if real else stock, column)
+    alone = () if real else tuple(name for name in buildable.ONLY if name != "column" or stock is None)
+    goes_with = [f"--{name.replace('_', '-')}" for name in alone if terminal.typed(context, name)]
     if goes_with:
         raise InputError(f"{goes_with[0]}: needs --realise, or --stock with a list")
     wound = {"stiffness_factor": stiffness_factor, "preload": share(preload, "--preload")}

@@ -64,7 +64,7 @@ def free_lengths(texts: list[str]) -> float | dict[str, float] | None:
     return found.get("", found) if found else None
 
 
-def for_cam(method: str, joint: str | None, stock: Path | None) -> dict[str, Any]:
+def for_cam(method: str, joint: str | None, stock: Path | None, columns: list[str] | None = None) -> dict[str, Any]:
     """The options of the method cam that are not given by ``--set``.
 
     Raises:
@@ -77,9 +77,9 @@ def for_cam(method: str, joint: str | None, stock: Path | None) -> dict[str, Any
         return {}
     found: dict[str, Any] = {} if joint is None else {"joint": joint}
     if stock is not None:
-        from ..hardware.stock.parts import read_catalogue
+        from .buildable import parts
 
-        found["stock"] = read_catalogue(stock)
+        found["stock"] = parts(stock, columns)
     return found
 
 

@@ -22,9 +22,8 @@ from ..model.mechanism import Mechanism
 from ..model.region import SHAPES, Shape
 from ..model.units import Amount
 from ..model.validate import MAX_SAMPLES, whole_number
+from .convex.beside import beside
 from .convex.blocks import Block
-from .convex.cam_block import CamBlock
-from .convex.counterweight_block import CounterweightBlock
 from .convex.spring_block import SpringBlock
 from .goal import asked, motor_scale, stated
 from .load import OWN, Load, with_means
@@ -59,12 +58,11 @@ class ProblemOptions(Options):
         seed: of those poses.
         unlimited: judge over all configurations, ignoring the ranges of the joints that turn.
         keep: the mechanism's own springs stay and count as a load; else they are replaced.
-        counterweights: [m] weights too, on every link that moves within this of its origin, or body -> distance.
-        cams: joints, or sums such as "shoulder+elbow", that may have a cam of any energy; see `CamBlock`.
+        counterweights, cams: weights within so much [m] of every link's origin, or body -> distance; and sums of joints
+            such as "hip+knee" that may have a cam: see `CounterweightBlock` and `CamBlock`.
         loads: what has to be balanced, by default the mechanism as it is; of several the weighted mean of the mean
             squares counts, or the largest of all peaks.
-        goal: what the design is for; by default the mechanism's own. The options above that are given count instead of
-            what it says.
+        goal: what the design is for, by default the mechanism's own; the options above that are given count instead.
     """
 
     span: int = option(2, "whole", "springs join bodies at most this many moving joints apart (default 2)")
@@ -84,7 +82,7 @@ class ProblemOptions(Options):
     counterweights: Amount | Mapping[str, Amount] | None = option(
         None, "length", "weights too, within this of each link's origin, or of one BODY's", each=True
     )
-    cams: Iterable[str] | None = option(None, "names", "A,B+C,...: cams too, on these joints or sums of joints")
+    cams: Iterable[str] | None = option(None, "names", "A,B+C,...: cams too, on joints or sums of joints")
     loads: Iterable[Load] | None = None
     goal: Goal | None = None
 
@@ -141,9 +139,7 @@ class Problem:
         else:
             given["span"] = None
         given["regions"] = options.regions or {}
-        weights = given.pop("counterweights")
-        given["beside"] = () if weights is None else tuple(CounterweightBlock.each(mechanism, weights))
-        given["beside"] += tuple(CamBlock.each(mechanism, given.pop("cams") or ()))
+        given["beside"] = beside(mechanism, given.pop("counterweights"), given.pop("cams"))
         problem = Problem(mechanism, **given)
         written = stated(goal, problem)
         if written or mechanism.goal:
