@@ -145,6 +145,7 @@ def design(
     from ..synthesis import METHODS, by_name
     from . import options, weights
     from .built import built, write
+    from .cam_options import for_cam
     from .regions import regions, sizes
 
     given: dict[str, Any] = {
@@ -174,7 +175,7 @@ def design(
             raise InputError(f"--{name} and --set {name} both give '{name}': leave out one of them")
         given |= more
     real = realise is not None or (stock is not None and method != "cam")
-    given |= options.for_cam(method, joint, None if real else stock, column)
+    given |= for_cam(method, joint, None if real else stock, column)
     alone = () if real else tuple(name for name in buildable.ONLY if name != "column" or stock is None)
     goes_with = [f"--{name.replace('_', '-')}" for name in alone if terminal.typed(context, name)]
     if goes_with:

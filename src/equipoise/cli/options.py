@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..model import slips
@@ -62,25 +61,6 @@ def free_lengths(texts: list[str]) -> float | dict[str, float] | None:
     if "" in found and len(texts) > 1:
         raise InputError(Fault(("--free-length",), "give one length for all springs, or SPRING=LENGTH for each"))
     return found.get("", found) if found else None
-
-
-def for_cam(method: str, joint: str | None, stock: Path | None, columns: list[str] | None = None) -> dict[str, Any]:
-    """The options of the method cam that are not given by ``--set``.
-
-    Raises:
-        InputError: another method, or a list that cannot be read.
-    """
-    given = {"--joint": joint, "--stock": stock}
-    if method != "cam":
-        if used := [name for name, value in given.items() if value is not None]:
-            raise InputError(Fault((used[0],), f"is for --method cam; the method is {method}"))
-        return {}
-    found: dict[str, Any] = {} if joint is None else {"joint": joint}
-    if stock is not None:
-        from .buildable import parts
-
-        found["stock"] = parts(stock, columns)
-    return found
 
 
 def friction(texts: list[str], mechanism: Mechanism) -> dict[str, float]:

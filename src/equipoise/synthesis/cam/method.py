@@ -28,7 +28,7 @@ from ..options import takes
 from .make import made
 from .options import CamOptions, between, wishes_of
 from .search import PARTS, Search, Wishes, usable
-from .springs import Offer
+from .springs import KINDS, Offer
 from .terms import terms
 from .wanted import Wanted, of_law, wanted
 
@@ -144,7 +144,7 @@ def _offers(part: Wanted, wishes: Wishes, options: CamOptions) -> list[Offer]:
     if options.stock is None:
         return [Offer(str(options.spring))]
     order = sorted(options.stock, key=lambda one: (one.price, one.mass))
-    offers = usable([Offer.of(one) for one in order], part, wishes)
+    offers = usable([Offer.of(one) for one in order if one.kind in KINDS], part, wishes)
     if not offers:
         work = float(part.energy(part.angles()).max())
         how = "pulls" if not wishes.guide and wishes.roller is None else "there"

@@ -11,6 +11,7 @@ from ...model.elements.laws import Compression, Extension, Gas, Law, Linear
 KINDS = ("extension", "linear", "gas", "compression")
 PUSHING = ("gas", "compression")
 SPARE = 0.05  # of the travel that is left at either end of what is made to measure
+EVEN = 1e-4  # share by which a force rises at least over a stroke: one that is the same all over has no rate
 MOUNT = 0.06  # [m] of a gas spring's ends
 
 
@@ -29,6 +30,14 @@ class Part(Protocol):
     def initial_tension(self) -> float: ...
     @property
     def free_length(self) -> float: ...
+    @property
+    def max_length(self) -> float: ...
+    @property
+    def min_length(self) -> float: ...
+    @property
+    def force(self) -> float: ...
+    @property
+    def progression(self) -> float: ...
     @property
     def mass(self) -> float: ...
     @property
@@ -56,11 +65,14 @@ class Offer:
     @staticmethod
     def of(part: Part) -> Offer:
         """A row of a list."""
-        return Offer(part.kind, part.rate, part.max_force, part.initial_tension, part.free_length, part.part)
-
-    def longest(self, k: float, F1: float) -> float:
-        """The length under the largest force [m], of one that pulls."""
-        return self.unloaded(k, F1) + (F1 - self.least) / k
+        free, most = part.free_length, part.max_force
+        if part.kind == "gas":
+            most, stroke = most or part.progression * part.force, free - part.min_length
+            rate = max(most - part.force, EVEN * part.force) / stroke
+            return Offer(part.kind, rate, part.force + rate * stroke, part.force, free, part.part)
+        ends = (part.max_length - free, free - part.min_length)  # [m] that it may be drawn, and pushed in
+        most = min(most, part.initial_tension + part.rate * ends[part.kind == "compression"])
+        return Offer(part.kind, part.rate, most, part.initial_tension, free, part.part)
 
     def unloaded(self, k: float, F1: float) -> float:
         """Its length with nothing on it [m]; where that may be any, one that the spring's travel usually needs."""
@@ -80,6 +92,8 @@ class Offer:
         if self.kind == "compression":
             solid = free - min(self.most, F1 + SPARE * (F1 - F0)) / k
             return Compression(k, free, solid), free - F0 / k
+        if self.length == self.length:
+            return Gas(self.least, free, free - (self.most - self.least) / k, self.most), free - (F0 - self.least) / k
         spare = SPARE * (F1 - F0) / k
         stroke = (F1 - F0) / k + 2 * spare
         force, longest = F0 - k * spare, 2 * stroke + MOUNT
