@@ -212,7 +212,6 @@ def test_what_cannot_serve_it_says_so_by_name(hinge: Path, tmp_path: Path, run) 
     stock = tmp_path / "stock.csv"
     assert run("made-up", "--count", "5", "-o", stock)[0] == 0
     commands = (
-        ("hardware", hinge),
         ("stock", hinge, stock),
         ("tolerance", hinge),
         ("clearance", hinge),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -16,6 +16,7 @@ from .buildable import Cycles, Fatigue, Safety, named
 
 if TYPE_CHECKING:
     from ..hardware import Options
+    from ..model.mechanism import Mechanism
 
 
 @app.command()
@@ -49,6 +50,7 @@ def hardware(
     """
     from ..balance import check
     from ..hardware.realise.bill import bill as make
+    from ..hardware.realise.held import real
     from ..io.files import check_writable, write_text
     from ..report.drawing import check_sheet, save_drawing
 
@@ -61,6 +63,8 @@ def hardware(
         check_writable(output)
     if sheet:
         check_sheet(sheet)
+    if real(mechanism):
+        _kit(mechanism, options, realise, output, sheet, json)
     with terminal.progress_bar("judging the design") as report:
         bill = make(check(mechanism), options, realise, report)
     if output:
@@ -80,6 +84,31 @@ def hardware(
     for path in filter(None, (output, sheet)):
         terminal.say(f"wrote {path}")
     raise typer.Exit(0 if bill.complete else 1)
+
+
+def _kit(
+    mechanism: Mechanism, options: Options, realise: str | None, output: Path | None, sheet: Path | None, json: bool
+) -> NoReturn:
+    """The springs of a file that are real already."""
+    from ..balance import check
+    from ..hardware.realise.held import kit
+    from ..io.files import write_text
+    from ..report.held import kit_csv, kit_lines
+
+    for name, value in (("--realise", realise), ("--sheet", sheet)):
+        if value is not None:
+            raise InputError(Fault((name,), "the file's springs are real already; this is for those on paper"))
+    with terminal.progress_bar("judging the design"):
+        found = kit(check(mechanism), options)
+    if output:
+        write_text(output, kit_csv(found))
+    if json:
+        terminal.print_json(found.to_dict())
+    else:
+        terminal.show(kit_lines(found))
+    if output:
+        terminal.say(f"wrote {output}")
+    raise typer.Exit(0 if found.complete else 1)
 
 
 def _options(

@@ -12,7 +12,7 @@ from ..._version import __version__
 from ...balance import Balance, check
 from ...io import Source, loaded
 from ...model.arrays import Array
-from ...model.elements import Spring
+from ...model.elements import Spring, lines
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress, silent
@@ -59,7 +59,7 @@ def choose_parts(
         if name not in names:
             raise InputError(Fault(("without",), f"the list has no part {nearest(name, names)}"))
     table = Table.of(catalogue, choice.limits, choice.parallel, choice.max_length, choice.max_force, choice.without)
-    given = () if keep else tuple(s for s in mechanism.springs if isinstance(s, Spring))
+    given = () if keep else lines(mechanism, "stock")
     problem, start = _problem(mechanism, given, keep, where)
     if not given:
         start = _ideal(problem, choice.springs)

@@ -12,6 +12,7 @@ from ...model.errors import Fault, InputError, nearest
 from .wire import Quantity
 
 LOW, FOR_EVER = 1e3, 1e6  # cycles between which the strength falls
+BENDING = 0.577  # stress in torsion over the one in bending that wears as much (distortion energy; Shigley, 10-12)
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class Limits:
         extension: static torsional stress of an extension spring, share of Rm.
         compression: the same of a compression spring at its largest working force.
         solid: the same when it is pressed solid.
+        bending: static bending stress of a torsion spring, share of Rm.
         hook_bending, hook_torsion: stresses in the loop of an extension spring, share of Rm.
         shear_strength: ultimate strength in torsion, share of Rm, where Goodman's line ends.
         amplitude, mean: [Pa] a pair that unpeened springs endure for ever, where Goodman's line begins.
@@ -39,6 +41,7 @@ class Limits:
     extension: float = 0.45
     compression: float = 0.50
     solid: float = 0.56
+    bending: float = 0.70
     hook_bending: float = 0.75
     hook_torsion: float = 0.40
     shear_strength: float = 0.67
@@ -64,12 +67,15 @@ class Limits:
                 if not least <= one < float("inf"):
                     raise InputError(Fault(("limits", field.name), f"must be more than 0 and finite, found {one:g}"))
 
-    def endured(self, ultimate: Quantity) -> Quantity:
-        """Stress amplitude [Pa] about no mean that is endured for `cycles`, at an ultimate strength in torsion [Pa].
+    def endured(self, ultimate: Quantity, distortion: float = 1.0) -> Quantity:
+        """Stress amplitude [Pa] about no mean that is endured for `cycles`, at an ultimate strength [Pa].
 
         From 10^6 on that of springs that last for ever; down to 10^3 straight in both logarithms.
+
+        Args:
+            distortion: of the stress in torsion that wears as much as the one in question: `BENDING` for bending.
         """
-        for_ever = self.amplitude / (1 - self.mean / ultimate)
+        for_ever = self.amplitude / distortion / (1 - self.mean / distortion / ultimate)
         share = np.clip(np.log10(FOR_EVER / self.cycles) / np.log10(FOR_EVER / LOW), 0.0, 1.0)
         return for_ever * (self.low_cycle * ultimate / for_ever) ** share
 
@@ -104,6 +110,7 @@ SOURCES = {
     "extension": "EN 13906-2:2013, 10.2: cold coiled, static",
     "compression": "EN 13906-1:2013: cold coiled, static, usual share below the solid length's",
     "solid": "EN 13906-1:2013, 10: cold coiled, at solid length",
+    "bending": "EN 13906-3:2014: cold coiled, static",
     "hook_bending": "Shigley's Mechanical Engineering Design, table 10-7: 75 % of Rm for carbon steel, not set",
     "hook_torsion": "Shigley's Mechanical Engineering Design, table 10-7: 40 % of Rm for carbon steel, at the end",
     "shear_strength": "Shigley's Mechanical Engineering Design, eq. 10-30: Ssu = 0.67 Sut",

@@ -15,6 +15,7 @@ from ...balance import Balance
 from ...energy.exactness import EXACT
 from ...hardware import Bill, Limits, Options
 from ...hardware.realise.bill import bill, way_dict
+from ...hardware.realise.held import Kit, kit, real
 from ...hardware.sizing.wire import MM
 from ...model.arrays import Array
 from ...model.coordinate import Coordinate
@@ -31,7 +32,7 @@ EXTRAS = ("simulation", "hardware", "tolerance")
 SECONDS, POSES = 5.0, 5  # of the simulation: short, `equipoise simulate` runs longer
 BUILDS, LOOKED_AT = 20_000, 500  # builds of the tolerance, and poses of each
 NAMED = 6  # parameters that matter most
-Result = TypeVar("Result", Release, Bill, Tolerance)
+Result = TypeVar("Result", Release, Bill | Kit, Tolerance)
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Run:
     """What was asked for and ran, or a text that says why it did not; None for what was not asked for."""
 
     simulation: Release | str | None = None
-    hardware: Bill | str | None = None
+    hardware: Bill | Kit | str | None = None
     tolerance: Tolerance | str | None = None
 
 
@@ -63,8 +64,11 @@ def run(
         "simulating",
         lambda: release(m, seconds=SECONDS, poses=POSES, seed=seed, radius=radius, progress=report),
     )
+    asked = Options(limits=limits)
     made = attempt(
-        "hardware", "choosing springs to wind", lambda: bill(balance, Options(limits=limits), progress=report)
+        "hardware",
+        "choosing springs to wind",
+        lambda: kit(balance, asked) if real(m) else bill(balance, asked, progress=report),
     )
     # lengths of loops cannot scatter on their own: they would not close
     scatter = Scatter(length=0.0) if m.loops else Scatter()
@@ -118,7 +122,25 @@ def _simulation(found: Release) -> list[Block]:
     return [*blocks, Paragraph(f"Engine: {found.settings}.")]
 
 
-def _hardware(found: Bill) -> list[Block]:
+def _kit(found: Kit) -> list[Block]:
+    limits = found.options.limits
+    rows: list[list[Cell]] = [
+        [i.name, i.order or i.kind, i.realisation, *(_plain(f) for f in i.force), i.unit,
+         *("not judged" if x is None else _plain(x) for x in (i.static, i.fatigue))]
+        for i in found.items
+    ]  # fmt: skip
+    head = ("spring", "order or wind", "built in", "least force", "largest", "unit", "static margin", "fatigue margin")
+    asked = f"Asked for: a static margin of {limits.safety:g}"
+    asked += f" and a fatigue margin of {limits.fatigue:g} at {limits.cycles:g} cycles." if limits.fatigue else "."
+    blocks: list[Block] = [Paragraph(asked)]
+    said = [f"Warning: {text}" for text in found.warnings]
+    said += [f"{item.name}: {note}" for item in found.items for note in item.notes]
+    return [*blocks, *([Items(tuple(said))] if said else []), Table.of("Springs as they are built in", head, rows)]
+
+
+def _hardware(found: Bill | Kit) -> list[Block]:
+    if isinstance(found, Kit):
+        return _kit(found)
     rows: list[list[Cell]] = []
     for item in found.items:
         way = item.chosen
