@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import sys
 from dataclasses import replace
+from datetime import datetime
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from zoo import free_length_pendulum, geared_pair, pendulum, vertical_slide
 import equipoise as eq
 from equipoise.io import files
 from equipoise.model.errors import InputError
+from equipoise.report.body_sheet import places
 from equipoise.report.page import hardware as built
 from equipoise.report.page.content import Number
 from equipoise.report.page.design import torque_table
@@ -93,11 +96,12 @@ def report(run, tmp_path):
 
 
 def test_everything_is_in_the_page(report):
+    today = datetime.now().date().isoformat()
     found = report(EXAMPLES / "pendulum.yaml", "--radius", "50mm")
     assert found.texts("h1") == ["one-link arm"]
     assert found.texts("h2") == [
-        "Mechanism and springs", "Energy and torque", "Certificate, bound and gap", "Simulation", "Hardware",
-        "Tolerance", "Assumptions and conventions", "How to reproduce it, and provenance",
+        "For the workshop", "Mechanism and springs", "Energy and torque", "Certificate, bound and gap", "Simulation",
+        "Hardware", "Tolerance", "Assumptions and conventions", "How to reproduce it, and provenance",
     ]  # fmt: skip
     (verdict,) = found.texts("p", **{"class": "verdict good"})
     assert verdict == "EXACT: balanced in every pose, proved; without springs shoulder holds up to 5.886 N m"
@@ -107,7 +111,7 @@ def test_everything_is_in_the_page(report):
         "SHA-256", "No others could leave less torque",
     ):  # fmt: skip
         assert text in everything
-    assert found.texts("code")[0] == "equipoise report pendulum.yaml -o report.html --radius 50mm"
+    assert found.texts("code")[0] == "equipoise report pendulum.yaml -o report.html --radius 50mm --date " + today
     captions = found.texts("caption")
     for text in ("Springs, and", "Attachments", "Holding torque of", "Potential energy", "Certificate", "Provenance"):
         assert any(caption.startswith(text) for caption in captions), text
@@ -237,7 +241,8 @@ def test_it_has_headings_heads_of_tables_and_texts_for_pictures(report):
     assert len(found.texts("caption")) == len(found.texts("table"))
     assert all(own.get("scope") in ("row", "col") for own in found.attributes("th"))
     pictures = found.attributes("svg")
-    assert len(pictures) == 5  # two poses, schematic, bars, energies, torques
+    drilled = len(places(eq.load(LIN)))
+    assert len(pictures) == drilled + 5  # where to drill; two poses, schematic, bars, energies, torques
     for own in pictures:
         assert own["role"] == "img"
         for name in ("aria-labelledby", "aria-describedby"):
@@ -349,7 +354,8 @@ def test_nothing_is_left_when_writing_fails(tmp_path, monkeypatch, suffix):
 
 
 def test_it_says_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setattr("equipoise.report.page.make.NEEDS", ("jinja2", "not_installed_anywhere"))
+    # not by a path from the package: its `report` is the command
+    monkeypatch.setattr(sys.modules["equipoise.report.page.make"], "NEEDS", ("jinja2", "not_installed_anywhere"))
     made = make(eq.check(pendulum()), extras=())
     with pytest.raises(InputError, match=r"not_installed_anywhere: pip install 'equipoise\[report\]'"):
         save_report(made, tmp_path / "report.html")

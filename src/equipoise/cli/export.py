@@ -15,14 +15,17 @@ from .app import File, app
 @app.command()
 def export(
     file: File,
-    to: Annotated[str, typer.Option("--to", help="yaml, urdf, mjcf, svg or dxf", show_default=False)],
+    to: Annotated[
+        str, typer.Option("--to", help="yaml, urdf, mjcf, svg, dxf, sheet, sheet-dxf or order", show_default=False)
+    ],
     cam: Annotated[str | None, typer.Option("--cam", help="svg or dxf: the profile of this cam, to cut")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="default: standard output")] = None,
 ) -> None:
     """Write a mechanism in another format, or as a drawing.
 
     Springs become spatial tendons in MJCF and are left out of URDF. SVG is a schematic with the letters a, b and k;
-    DXF has the attachment points in mm and needs the extra: pip install 'equipoise\\[cad]'.
+    DXF has the attachment points in mm and needs the extra: pip install 'equipoise\\[cad]'. For a workshop, sheet (SVG)
+    and sheet-dxf draw every body's attachment points with dimensions, order lists what to order as CSV.
 
     Example: [bold]equipoise export ur5-balanced.yaml --to mjcf -o ur5.xml[/bold]
     Example: [bold]equipoise export ur5-balanced.yaml --to svg -o ur5.svg[/bold]

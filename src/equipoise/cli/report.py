@@ -33,9 +33,10 @@ def report(
     safety: Safety = 1.2,
     fatigue: Fatigue = 1.0,
     cycles: Cycles = 1e5,
+    date: Annotated[str | None, typer.Option(help="as it is to stand there (default: today)")] = None,
     json: Json = False,
 ) -> None:
-    """One self-contained file: verdict, pictures, springs, torques, certificate, simulation, hardware, tolerance.
+    """One self-contained file: what to build, verdict, pictures, torques, certificate, simulation, hardware, tolerance.
 
     A page (.html) loads nothing from anywhere; .pdf has the same content. Needs the extra: pip install
     'equipoise\\[report]'.
@@ -45,6 +46,7 @@ def report(
     """
     from ..balance import check
     from ..hardware import Limits
+    from ..report.body_sheet import today
     from ..report.page.make import EXTRAS, check_report, make, save_report
     from . import options
 
@@ -55,18 +57,25 @@ def report(
     size = None if radius is None else options.positive_length(radius, "--radius")
     check_report(output)  # before the work, not after it
     mechanism = terminal.load(file)
+    day = today() if date is None else date
     typed = ["equipoise", "report", file.name, "-o", output.name]  # what gives the same again
     typed += [] if extras == list(EXTRAS) else ["--with", ",".join(extras) or NONE]
     asked = Limits(safety=safety, fatigue=fatigue, cycles=cycles)
     margins = [(f"--{name}", f"{getattr(asked, name):g}") for name in MARGINS if terminal.typed(context, name)]
-    for option, value in (("--samples", samples), ("--seed", seed or None), ("--radius", radius), *margins):
+    for option, value in (
+        ("--samples", samples),
+        ("--seed", seed or None),
+        ("--radius", radius),
+        *margins,
+        ("--date", day),
+    ):
         typed += [] if value is None else [option, str(value)]
     with terminal.progress_bar("judging") as progress:
         progress("judging the balance", 0.0)
         balance = check(mechanism, samples=samples, seed=seed)
         found = make(
-            balance, extras=extras, seed=seed, radius=size, limits=asked, file=file, command=shlex.join(typed),
-            progress=progress,
+            balance, extras=extras, seed=seed, radius=size, limits=asked, date=day, file=file,
+            command=shlex.join(typed), progress=progress,
         )  # fmt: skip
         save_report(found, output)
     if json:

@@ -14,12 +14,18 @@ from .cam import cam_text
 FORMATS = {name: f"equipoise.io.{name}" for name in WRITERS} | {
     "svg": "equipoise.report.schematic",
     "dxf": "equipoise.report.attachments",
+    "sheet": "equipoise.report.body_sheet",
+    "sheet-dxf": "equipoise.report.body_sheet:to_dxf",
+    "order": "equipoise.report.order",
 }
-"""Name -> the module whose `to_text` writes it."""
+"""Name -> the module whose `to_text`, or other function, writes it."""
 
 
 def export(mechanism: Source, to: str, *, cam: str | None = None) -> str:
     """A mechanism as text: yaml, urdf, mjcf; svg is a schematic, dxf the attachment points.
+
+    For a workshop: sheet and sheet-dxf are a dimensioned drawing of each body's attachment points, order is the order
+    list as CSV.
 
     Args:
         cam: its name; then svg and dxf are its profile at full size, to cut.
@@ -31,7 +37,8 @@ def export(mechanism: Source, to: str, *, cam: str | None = None) -> str:
         raise InputError(Fault(("--to",), f"unknown format {nearest(to, FORMATS)}", tuple(FORMATS)))
     if cam is not None:
         return cam_text(loaded(mechanism), cam, to)
-    mechanism, write = loaded(mechanism), import_module(FORMATS[to]).to_text
+    module, _, function = FORMATS[to].partition(":")
+    mechanism, write = loaded(mechanism), getattr(import_module(module), function or "to_text")
     return write(*assembled(mechanism)) if to == "mjcf" else write(mechanism)
 
 

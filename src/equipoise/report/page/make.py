@@ -22,6 +22,7 @@ from .content import Report
 from .hardware import EXTRAS
 from .html import page
 from .pdf import pdf
+from .workshop import workshop_section
 
 NEEDS = ("jinja2", "matplotlib", "typst")
 WRITERS: dict[str, Callable[[Report], bytes]] = {".html": lambda report: page(report).encode(), ".pdf": pdf}
@@ -34,6 +35,7 @@ def make(
     seed: int = 0,
     radius: Amount | None = None,
     limits: Limits | None = None,
+    date: str = "",
     file: Path | None = None,
     command: str = "",
     progress: Progress | None = None,
@@ -45,6 +47,7 @@ def make(
         seed: of the random poses and builds of the extras.
         radius: [m] of the uniform spheres that stand for bodies without an inertia in the simulation.
         limits: the margins that springs to wind must have.
+        date: of the report, as it is to stand there.
         file: where the mechanism is from; command: what gives this report again.
 
     Raises:
@@ -63,6 +66,7 @@ def make(
         verdict=verdict(balance).plain,
         good=balance.exact,
         sections=(
+            workshop_section(balance, found.hardware, date),
             design.mechanism_section(balance),
             design.torque_section(balance),
             design.certificate_section(balance),
