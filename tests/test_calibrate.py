@@ -106,6 +106,10 @@ def test_of_equals_the_nearest_to_the_file():
     same = eq.calibrate(hinge.with_springs([spring]), [{"joint2": 0.3}])
     assert same.mechanism.springs[0].stiffness == pytest.approx(spring.stiffness, rel=1e-9)
     assert same.mechanism.springs[0].free_length == pytest.approx(0, abs=1e-9)
+    moved = eq.calibrate(
+        hinge.with_springs([spring]), [{"joint2": 0.3}, {"joint2": -0.3}], bounds={"one": {"stiffness": (300.0, 400.0)}}
+    )  # what balances is not within the limits
+    assert moved.largest("N m") == pytest.approx(moved.proofs[0].least, rel=1e-6)
     half = replace(spring, stiffness=spring.stiffness / 4)
     fixed = {name: {"free_length": (0.0, 0.0)} for name in ("one", "two")}
     found = eq.calibrate(hinge.with_springs([half, replace(half, name="two")]), [{"joint2": 0.3}], bounds=fixed)

@@ -18,7 +18,6 @@ from ..model.units import SI_UNITS
 from .clearance import NOT_JUDGED
 from .numbers import energies, percent, pose, torque
 from .verdict import basis, verdict
-from .weights import weight_lines
 
 if TYPE_CHECKING:  # a verdict waits for no method
     from ..synthesis import Design, Parameter
@@ -154,6 +153,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         won = "so these are the best possible" if best else f"so at most {percent(gap)} of the torque can still be won"
         yield Text(f"  bound       {least}: {why}, {won}")
     if design.counterweights is not None:
+        from .weights import weight_lines
+
         yield from weight_lines(design.counterweights, design.unbalanced)
     if design.by_chance:
         yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")

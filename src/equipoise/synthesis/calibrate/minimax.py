@@ -130,9 +130,9 @@ def nearest(groups: Sequence[Held], dials: Sequence[Dial], start: Array) -> Arra
         start: unknowns that are known to do it; given back where the solver finds nothing better.
     """
     size, now = np.concatenate([dial.size for dial in dials]), np.concatenate([dial.now for dial in dials])
-    if max(group.over(now) for group in groups) <= 1 + CLOSE:
-        return now
     P, p = _polygons(dials)
+    if (P @ now <= p).all() and max(group.over(now) for group in groups) <= 1 + CLOSE:
+        return now
     limits, zero, one = np.column_stack([P * size, -p]), np.zeros((0, len(size) + 1)), np.eye(len(size) + 1)[-1]
     every = []  # as many rows of the others as matter
     for group in groups:
