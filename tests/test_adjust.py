@@ -8,10 +8,11 @@ import pytest
 import zoo
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from robots import lee_chen_springs
+from robots import lee_chen, lee_chen_springs
 
 import equipoise as eq
 from equipoise.balance import payload_residual
+from equipoise.energy import Potential
 from equipoise.model.errors import InputError
 from equipoise.model.payload import Payload
 from equipoise.robust import adjust
@@ -96,6 +97,68 @@ def test_a_spring_with_free_length_is_adjusted_as_well_as_it_can_be():
         x, y, z = (factor * value for value in spring.p_b)
         other = way.high.with_springs([replace(spring, p_b=(x, y, z))])
         assert eq.check(payload.on(other, 1.0), samples=2000).residual.rms[0] > rms
+
+
+def test_the_basic_gravity_equilibrator_is_adjusted_without_energy():
+    """The golden case: k a b = m g l, a above the joint; b slides to b' where the link's sine is (b + b') / 2 a."""
+    m = zoo.pendulum()  # a = 0.2 m, b = 0.15 m
+    found = adjust(m, Payload.at(m, (0.0, 0.5), "arm", (0.4, 0.0, 0.0)))
+    locked = found.locked
+    assert locked is not None
+    assert np.sin(locked.configuration[0]) == pytest.approx((0.15 + 0.2) / (2 * 0.2), rel=1e-9)
+    (arc,) = locked.arcs
+    assert arc.body == "arm"
+    q, spring = locked.configuration[None], m.springs[0]
+    move = found.best.moves[0]
+    start, end = (np.arctan2(p[2] - arc.centre[2], p[0] - arc.centre[0]) for p in (move.low, move.high))
+    turn = start + np.linspace(0, 1, 7) * ((end - start + np.pi) % (2 * np.pi) - np.pi)
+    for angle in turn:  # all along the arc the spring stores what it stores at its ends
+        p = (arc.centre[0] + arc.radius * np.cos(angle), 0.0, arc.centre[2] + arc.radius * np.sin(angle))
+        stored = Potential(m.with_springs([replace(spring, p_b=p)]))(q).springs.sum()
+        assert stored == pytest.approx(Potential(m)(q).springs.sum(), rel=1e-9)
+    assert [step.exact for step in found.steps] == [True] * 5
+    far = adjust(m, Payload.at(m, (0.0, 2.0), "arm", (0.4, 0.0, 0.0)))
+    assert far.locked is None  # b would have to be 0.35 m: beyond what the link reaches at any angle
+
+
+def test_a_slide_to_the_payload_s_point_is_exact_at_every_payload():
+    """A vertical slide by m g / k of a spring to the payload's point, beside springs that balance the arm."""
+    k, arm = 2.0 * zoo.G / 0.2, zoo.pendulum()
+    spring = eq.Spring("payload spring", "world", (0, 0, 0), "arm", (0.4, 0, 0), k)
+    m = arm.with_springs([*arm.springs, spring])
+    found = adjust(m, Payload.at(m, (0.0, 2.0), "arm", (0.4, 0.0, 0.0)), payloads=20)
+    assert len(found.steps) == 20
+    assert all(step.exact for step in found.steps)
+    way = next(way for way in found.ways if (way.moves[0].spring, way.moves[0].what) == ("payload spring", "p_a"))
+    assert way.moves[0].high == pytest.approx((0, 0, 0.2), abs=1e-9)
+
+
+def test_a_partial_adjustment_within_its_travel():
+    m, payload = pendulum(0.0, 0.5)
+    found = adjust(m, payload, travel="10 mm")
+    assert not found.keeps
+    assert found.best.moves[0].travel == pytest.approx(0.01, rel=1e-4)
+    assert found.best.moves[0].high == pytest.approx((0.16, 0, 0), abs=1e-3)  # over random poses
+    last = found.steps[-1]
+    spring = m.springs[0]
+    assert last.unmoved[0] == pytest.approx(0.5 * 0.4 * zoo.G, rel=1e-3)
+    assert last.moved[0] == pytest.approx(0.5 * 0.4 * zoo.G - spring.stiffness * 0.2 * 0.01, rel=1e-3)
+    assert found.unmoved == pytest.approx(1.0)
+    assert found.reach is not None
+    assert found.reach < np.sqrt(0.5) * last.moved[0]  # a stiffer spring would do it
+
+
+def test_an_approximate_design_gets_a_table_with_a_gain():
+    design = eq.design(lee_chen(), pairs=[("world", "link2"), ("link2", "link3")], radius=0.1, keep=False)
+    assert not design.balance.exact
+    m = design.mechanism
+    found = adjust(m, Payload.at(m, (0.0, 0.5), "link4", (0.05, 0, 0)))
+    assert not found.keeps
+    assert found.best.share < found.unmoved
+    assert found.steps[-1].moved.max() < 0.95 * found.steps[-1].unmoved.max()
+    assert found.reach is not None
+    rms = eq.check(Payload.at(m, (0.5,), "link4", (0.05, 0, 0)).on(found.best.high, 0.5)).residual.rms
+    assert np.linalg.norm(rms) >= found.reach * 0.97  # over other random poses
 
 
 def test_command_line(run, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -21,12 +22,15 @@ def adjust(
     tolerance: Annotated[
         str, typer.Option(help="balance is kept when less than this of what the payload does is left, a share")
     ] = "1e-9",
+    travel: Annotated[str | None, typer.Option(metavar="LENGTH", help="no end moves further")] = None,
+    payloads: Annotated[int, typer.Option(min=2, help="for how many payloads of the range the table is")] = 5,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write the best fixed design: .yaml")] = None,
     seed: Annotated[int, typer.Option(min=0, help="of the random poses")] = 0,
     json: Json = False,
 ) -> None:
     """What to move when the payload changes: attachment or preload, how far, the energy it takes.
 
+    With what is left at each joint for payloads of the range, and a pose in which it takes no energy, if there is one.
     And the best fixed springs for the whole range, beside the least that any fixed springs leave.
 
     Exit code 1 when no adjustment of up to three springs keeps the balance.
@@ -38,12 +42,13 @@ def adjust(
     from . import options
 
     limit = share(tolerance, "--tolerance")
+    far = inf if travel is None else options.positive_length(travel, "--travel")
     mechanism = terminal.load(file)
     carried = options.payload(mechanism, payload, payload_on, payload_at)
     if output:
         check_savable(output)
     with terminal.progress_bar("trying what to move") as report:
-        found = run(mechanism, carried, tolerance=limit, seed=seed, progress=report)
+        found = run(mechanism, carried, tolerance=limit, travel=far, payloads=payloads, seed=seed, progress=report)
         if output:
             save(found.fixed, output)
     if json:

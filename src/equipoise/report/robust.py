@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from math import inf
 
 import numpy as np
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..model.arrays import vec3
+from ..model.elements.along_line import millimetres
 from ..robust import Adjustment, Sweep, Tolerance
+from ..robust.arcs import Locked
 from ..robust.moves import Way
+from .numbers import pose
 from .style import number
 
+SMALL = 0.01  # of the largest: joints with less are not listed
 LISTED = 8  # parameters that are named
 
 
@@ -72,8 +78,21 @@ def adjustment_lines(found: Adjustment) -> Iterator[RenderableType]:
     yield Text(f"{answer}: {100 * share:.3g} % of what the payload does is left", style=style)
     yield Text(f"from {low:.4g} kg to {high:.4g} kg on {found.payload.link}, move:")
     yield _moves([best])
-    yield Text("each on its own, as far as it does any good:")
-    yield _moves(way for way in found.ways if way.share < 1 - 1e-3)
+    if found.reach is not None:
+        yield Text(
+            f"no sliding end does it: springs between these bodies, no further out, leave at least {found.reach:.4g} "
+            f"N m rms at {high:.4g} kg, whatever their stiffness",
+        )
+    if found.travel < inf:
+        yield Text(f"no end moved by more than {1e3 * found.travel:.4g} mm", style="dim")
+    if found.locked is not None:
+        yield from _without_energy(found, found.locked)
+    yield Text("the largest residual [N m, slides N] over random poses, as the design is -> so adjusted")
+    yield _steps(found)
+    good = [way for way in found.ways if way.share < found.unmoved * (1 - 1e-3)]
+    yield Text("each on its own, as far as it does any good:" if good else "no end does any good on its own")
+    if good:
+        yield _moves(good)
     yield Text("fixed, set for the middle: the largest residual, and the least that any fixed springs leave")
     table = Table(box=None, pad_edge=False, header_style="dim")
     for title in ("joint", "fixed", "least", "unit"):
@@ -84,6 +103,35 @@ def adjustment_lines(found: Adjustment) -> Iterator[RenderableType]:
         cells = (number(float(value) if value > floor else 0.0) for value in (left, least))
         table.add_row(Text(coordinate), *cells, coordinate.load_unit)
     yield table
+
+
+def _without_energy(found: Adjustment, locked: Locked) -> Iterator[Text]:
+    """Where to lock the joints, and how the ends slide then."""
+    yield Text(f"without energy: lock it at {pose(found.ends[0].coordinates, locked.configuration)} and slide")
+    for arc in locked.arcs:
+        yield Text(
+            f"  {arc.what} of {arc.spring} on {arc.body}, along an arc of radius {1e3 * arc.radius:.1f} mm about "
+            f"{millimetres(vec3(arc.centre))} mm: the spring keeps its length"
+        )
+
+
+def _steps(found: Adjustment) -> Table:
+    """What is left at each joint at payloads of the range."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    coordinates = found.ends[0].coordinates
+    most = max(float(one.unmoved.max(initial=0.0)) for one in found.steps)
+    floor = 1e-9 * most
+    some = [j for j in range(len(coordinates)) if max(one.unmoved[j] for one in found.steps) > SMALL * most]
+    table.add_column("payload", justify="right")
+    for j in some:
+        table.add_column(Text(coordinates[j]), justify="right")
+    table.add_column("exact")
+    for one in found.steps:
+        cells = (
+            " -> ".join(number(float(t[j]) if t[j] > floor else 0.0) for t in (one.unmoved, one.moved)) for j in some
+        )
+        table.add_row(f"{one.payload:.4g} kg", *cells, "proved" if one.exact else "")
+    return table
 
 
 def _moves(ways: Iterable[Way]) -> Table:

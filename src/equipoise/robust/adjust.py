@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from typing import Any, get_args
 
 import numpy as np
@@ -26,16 +27,22 @@ from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.payload import Payload
 from ..model.progress import Progress, silent
-from ..model.units import Amount, share
+from ..model.units import Amount, number, quantity, share
+from ..model.validate import whole_number
 from ..synthesis.mounts import Mounts
+from .arcs import Locked, locked
+from .limited import limited
 from .moves import Handle, Move, Way, What, moved, sets, value
+from .reach import least_left
 from .scatter import Scatter
+from .steps import Step, step
 from .torque_map import TorqueMap
 
 POSES = 200
 SETTLING_STEPS = 20
 KEPT = 1e-9  # of what the range of payload does, root mean square: less is balance
-SINGULAR = 1e-9  # of the largest: directions that do nothing
+PAYLOADS = 5  # of the range, ends included, for which the adjustment is given
+SHOWN = 1000  # poses that tell what is left at each
 EVERY_ATTACHMENT = Scatter(stiffness=0, attachment=1, mass=0, length=0)
 
 
@@ -51,6 +58,12 @@ class Adjustment(Shown):
         fixed: the mechanism, without the payload, set by `best` for the middle of the range once and for all.
         left: (n,) its largest residual torque over the range [N m or N].
         bound: (n,) no fixed springs whatever leave less: half the range times the largest torque of 1 kg.
+        unmoved: what the design as it is leaves at the worse end, as `Way.share`.
+        steps: `best` at payloads of the range, beside the design as it is.
+        locked: a pose in which `best` takes no energy, where there is one.
+        travel: [m] that an end may be moved, at most.
+        reach: [N m] rms, what all springs on the same pairs leave at the largest payload at least, see `least_left`;
+            None where the balance is kept, or nothing is known.
     """
 
     payload: Payload
@@ -61,6 +74,11 @@ class Adjustment(Shown):
     fixed: Mechanism
     left: Array
     bound: Array
+    unmoved: float
+    steps: tuple[Step, ...]
+    locked: Locked | None
+    travel: float = inf
+    reach: float | None = None
 
     @property
     def exact(self) -> bool:
@@ -81,6 +99,11 @@ class Adjustment(Shown):
             "exact": self.exact,
             "best": self.best.to_dict(),
             "ways": [way.to_dict() for way in self.ways],
+            "unmoved": self.unmoved,
+            "travel": None if self.travel == inf else self.travel,
+            "reach": self.reach,
+            "steps": [one.to_dict() for one in self.steps],
+            "without_energy": None if self.locked is None else self.locked.to_dict(),
             "residual": [balance.residual.max.tolist() for balance in self.ends],
             "fixed": {"residual": self.left.tolist(), "bound": self.bound.tolist()},
         }
@@ -91,6 +114,8 @@ def adjust(
     payload: Payload,
     *,
     tolerance: Amount = KEPT,
+    travel: Amount = inf,
+    payloads: int = PAYLOADS,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Adjustment:
@@ -99,6 +124,8 @@ def adjust(
     Args:
         mechanism: or the path of its file.
         tolerance: of what the range of payload does: less is balance; a design of rounded numbers needs more.
+        travel: [m] that an end, or a free length, may be moved at most.
+        payloads: for how many payloads of the range the adjustment is given.
 
     Raises:
         InputError: no springs, no range, a payload that loads nothing, or no such tolerance.
@@ -106,13 +133,15 @@ def adjust(
     mechanism, tolerance = loaded(mechanism), share(tolerance, "tolerance")
     if not KEPT <= tolerance < 1:
         raise InputError(f"the tolerance must be a share from {KEPT:g} to less than 1, found {tolerance:g}")
+    travel = inf if travel == inf else number("travel", quantity(travel, "length", "travel"), positive=True)
+    whole_number("payloads", payloads, 2)
     springs = lines(mechanism, "adjust")
     if not springs:
         raise InputError(f"mechanism '{mechanism.name}' has no springs to adjust")
     if not payload.low < payload.high:
         raise InputError("the payload must have a range, the smallest and the largest; for one, design with it")
     tree = Tree.of(mechanism)
-    problem = _Problem(mechanism, payload, sample(tree, POSES, seed))
+    problem = _Problem(mechanism, payload, sample(tree, POSES, seed), travel)
     if not problem.unit:
         raise InputError(f"a payload on '{payload.link}' loads no joint")
     handles = [Handle(i, what) for i in range(len(springs)) for what in get_args(What)]
@@ -125,6 +154,8 @@ def adjust(
     report("judging the adjusted design", len(handles) / (len(handles) + 2))
     ends = (check(payload.on(best.low, payload.low)), check(payload.on(best.high, payload.high)))
     fixed = problem.settled(chosen, payload.middle)
+    masses, some = np.linspace(payload.low, payload.high, payloads).tolist(), sample(tree, SHOWN, seed + 1)
+    steps = (step(mechanism, problem.settled(chosen, mass), chosen, payload, mass, some) for mass in masses)
     left = payload_residual(payload, fixed, fixed.springs)
     return Adjustment(
         payload=payload,
@@ -135,6 +166,11 @@ def adjust(
         fixed=fixed,
         left=np.array([left[name] for name in tree.coordinates]),
         bound=(payload.high - payload.low) / 2 * _torque_of_one(mechanism, payload),
+        unmoved=max(float(np.linalg.norm(torque)) for torque in (problem.low, problem.high)) / problem.unit,
+        steps=tuple(steps),
+        locked=locked(mechanism, best.moves, problem.q),
+        travel=travel,
+        reach=None if best.share <= tolerance else least_left(mechanism, payload, payload.high, travel),
     )
 
 
@@ -155,8 +191,8 @@ def _order(share: float, travel: float, tolerance: float) -> tuple[float, float]
 class _Problem:
     """Torques at the poses, coordinate by coordinate, slides weighted to count like turns."""
 
-    def __init__(self, mechanism: Mechanism, payload: Payload, q: Array) -> None:
-        self.mechanism, self.payload, self.q = mechanism, payload, q
+    def __init__(self, mechanism: Mechanism, payload: Payload, q: Array, travel: float = inf) -> None:
+        self.mechanism, self.payload, self.q, self.travel = mechanism, payload, q, travel
         self.tree = Tree.of(mechanism)
         self.weight = np.where(self.tree.turns, 1.0, Mounts.of(mechanism).reach).repeat(len(q))
         self.low, self.high = (self._torque(payload.on(mechanism, mass)) for mass in (payload.low, payload.high))
@@ -176,9 +212,12 @@ class _Problem:
         """The springs set for a payload [kg], without it."""
         now = self.mechanism
         left = self._torque(self.payload.on(now, mass))
+        start = np.concatenate([value(now, handle) for handle in handles])
+        widths = [len(value(now, handle)) for handle in handles]
         for _ in range(SETTLING_STEPS):
             J = np.concatenate(self._columns(now, handles), axis=1)
-            step = np.asarray(np.linalg.lstsq(J, -left, rcond=SINGULAR)[0], float)
+            done = np.concatenate([value(now, handle) for handle in handles]) - start
+            step = limited(J, left, widths, done, self.travel)
             for part in (1.0, 0.5, 0.25, 0.125):
                 trial = moved(now, handles, part * step)
                 torque = self._torque(self.payload.on(trial, mass))
@@ -200,7 +239,9 @@ class _Problem:
         best: tuple[tuple[float, float], tuple[Handle, ...]] | None = None
         for chosen in sets(handles):
             own = [j for h in chosen for j in range(width[handles.index(h)], width[handles.index(h) + 1])]
-            x = np.linalg.lstsq(R[:, own], -R[:, -2:], rcond=SINGULAR)[0]
+            each = [width[handles.index(h) + 1] - width[handles.index(h)] for h in chosen]
+            none = np.zeros(len(own))
+            x = np.stack([limited(R[:, own], r, each, none, self.travel) for r in R[:, -2:].T], axis=1)
             share = float(np.linalg.norm(R[:, own] @ x + R[:, -2:], axis=0).max()) / self.unit
             if best is not None and len(chosen) > len(best[1]) and best[0][0] == 0.0:
                 break  # fewer springs do it
