@@ -4,6 +4,8 @@ A free length L0 adds ``-k L0 d/|d|`` to the force of the zero-free-length sprin
 changes of a design that was optimal without it. Where a spring's length changes little over the workspace, L0/|d| is
 nearly constant and only weakens the spring: so one attachment moves close to its joint and the spring gets stiffer.
 
+Attachments stay 5 mm from the axes that they turn about (`levers`).
+
 Room is a constraint: springs are moved until nothing is nearer than it may be at the sampled poses; then the whole
 workspace is judged, and the poses where something is too near are added until there is none.
 """
@@ -29,7 +31,8 @@ from ...model.units import Amount
 from ...model.validate import MAX_SAMPLES, whole_number
 from ..options import Options, option, takes
 from ..region import Given, given_regions
-from .ordinary_fit import FREE_LENGTHS, Fit
+from .levers import Levers
+from .ordinary_fit import FREE_LENGTHS, Fit, both
 
 ROOM_ROUNDS = 8  # of adding the poses with too little room
 WEIGHT = 10  # times that such a pose counts
@@ -146,8 +149,10 @@ def ordinary(mechanism: Source, options: OrdinaryOptions) -> Ordinary:
         replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
     )
 
+    levers = Levers.of(mechanism, lines(mechanism, FREE_LENGTHS))
+
     def fitted(room: ClearanceConstraint | None) -> Mechanism:
-        fit = Fit(mechanism, lengths, regions, q, room)
+        fit = Fit(mechanism, lengths, regions, q, levers if room is None else both(levers, room))
         found = [fit.solve(x, stiffness_factor, preload) for x in fit.starts(stiffness_factor)]
         return fit.mechanism_of(min(found, key=lambda one: one[1])[0])
 

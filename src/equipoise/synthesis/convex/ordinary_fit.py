@@ -29,6 +29,16 @@ Penalty = Callable[[Array], tuple[Array, Array]]
 """Attachments (springs, 2, 3) [m] -> rows to keep at zero, and their derivative (rows, springs, 2, 3)."""
 
 
+def both(one: Penalty, other: Penalty) -> Penalty:
+    """The rows of two penalties."""
+
+    def rows(ends: Array) -> tuple[Array, Array]:
+        found = one(ends), other(ends)
+        return np.concatenate([r for r, _ in found]), np.concatenate([J for _, J in found])
+
+    return rows
+
+
 class Fit:
     """The least-squares problem; `x` (springs, WIDTH) flat, lengths in shares of each spring's free length."""
 
