@@ -14,8 +14,8 @@ import equipoise as eq
 from equipoise.energy import Potential
 from equipoise.kinematics import Tree
 from equipoise.model.errors import InputError
-from equipoise.synthesis.calibrate.dials import columns, dials
 from equipoise.synthesis.calibrate.minimax import proved
+from equipoise.synthesis.dials import columns, dials
 
 ENDS = (
     ("world", (-0.03, 0, 0.2), "link2", (0.12, 0, 0.01)),

@@ -106,6 +106,13 @@ def design(
     keep: Annotated[
         bool, typer.Option("--keep", help="the file's own springs stay (default: they are replaced)")
     ] = False,
+    torsion: Annotated[
+        str | None, typer.Option(metavar="A,B,...|all", help="joints that may have a torsion spring too")
+    ] = None,
+    tune: Annotated[
+        str | None,
+        typer.Option(metavar="A,B,...", help="springs of the file whose numbers are chosen too, with their ends kept"),
+    ] = None,
     counterweights: Annotated[
         str | None,
         typer.Option(metavar="LENGTH|BODY=LENGTH,...", help="weights too, within this of the links' origins"),
@@ -163,6 +170,8 @@ def design(
         "front": front,
         "keep": keep,
         "seed": seed,
+        "torsion": None if torsion is None else options.names(torsion),
+        "tune": None if tune is None else options.names(tune),
         "counterweights": None if counterweights is None else weights.counterweights(counterweights),
         "residual": None if residual is None else share(residual, "--residual"),
     }

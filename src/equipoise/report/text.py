@@ -156,6 +156,9 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         from .weights import weight_lines
 
         yield from weight_lines(design.counterweights, design.unbalanced)
+    for name, left in design.brought.items():
+        share = percent(left / design.unbalanced)
+        yield Text(f"  {name}: without it at least {torque(left, floor)} N m = {share} would be left")
     if design.by_chance:
         yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")
     if design.fewest is not None:

@@ -101,6 +101,7 @@ class Design(Shown):
         goal: what it was made for, where that is more than the objective; `residual` and its like are in its terms.
         ordinary: what was lost when the springs got a free length, or room.
         counterweights: what was designed beside the springs.
+        brought: element with fixed ends -> [N m] rms that is left at least without it.
         judged: the verdict on `mechanism`, where making the design took one; of any other it says nothing.
     """
 
@@ -122,6 +123,7 @@ class Design(Shown):
     goal: Goal = BY_DEFAULT
     ordinary: Ordinary | None = None
     counterweights: Counterweights | None = None
+    brought: Mapping[str, float] = field(default_factory=dict)
     judged: Balance | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
@@ -251,6 +253,7 @@ class Design(Shown):
                 for row in self.front
             ],
             "by_chance": self.by_chance,
+            **({"brought": dict(self.brought)} if self.brought else {}),
             "goal": self.goal.to_dict() or None,
             "fewest": None if self.fewest is None else self.fewest.to_dict(),
             "free_parameters": dict(self.free_parameters),

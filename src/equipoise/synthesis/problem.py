@@ -24,6 +24,7 @@ from ..model.units import Amount
 from ..model.validate import MAX_SAMPLES, whole_number
 from .convex.beside import beside
 from .convex.blocks import Block
+from .convex.set_block import without
 from .convex.spring_block import SpringBlock
 from .goal import asked, motor_scale, stated
 from .load import OWN, Load, with_means
@@ -79,6 +80,8 @@ class ProblemOptions(Options):
     seed: int = option(0, "whole", "of the random poses (default 0)")
     unlimited: bool = False
     keep: bool = False
+    torsion: Iterable[str] | None = option(None, "names", "A,B,...: joints that may have a torsion spring too; or all")
+    tune: Iterable[str] | None = option(None, "names", "A,B,...: springs of the file whose numbers are chosen too")
     counterweights: Amount | Mapping[str, Amount] | None = option(
         None, "length", "weights too, within this of each link's origin, or of one BODY's", each=True
     )
@@ -139,7 +142,9 @@ class Problem:
         else:
             given["span"] = None
         given["regions"] = options.regions or {}
-        given["beside"] = beside(mechanism, given.pop("counterweights"), given.pop("cams"))
+        asked_for = ("counterweights", "cams", "torsion", "tune")
+        given["beside"] = beside(mechanism, *(given.pop(name) for name in asked_for))
+        mechanism = without(mechanism, given["beside"])
         problem = Problem(mechanism, **given)
         written = stated(goal, problem)
         if written or mechanism.goal:

@@ -19,7 +19,7 @@ from ...model.mechanism import Mechanism
 from ...model.progress import Progress, silent
 from ...model.units import Amount, quantity
 from ..convex.peak import peak_poses
-from .dials import Dial, Limits, columns, dials, set_to
+from ..dials import Dial, Limits, columns, dials, set_to
 from .minimax import Held, Least, least, nearest
 
 EXACT = 1e-9  # of the torque before: less is balance

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...model.arrays import Array, Booleans, Integers, frozen
 from ...model.errors import EquipoiseError
-from .dials import Dial
+from ..dials import Dial
 
 FIRST, CUTS, ROUNDS = 600, 100, 50  # rows of the first program, rows added to it at a time, and how often
 CLOSE = 1e-9  # relative: the worst row of all is as good as the worst of the chosen ones

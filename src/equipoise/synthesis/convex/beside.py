@@ -9,15 +9,21 @@ from ...model.units import Amount
 from .blocks import Block
 from .cam_block import CamBlock
 from .counterweight_block import CounterweightBlock
+from .set_block import SetBlock
 
 
 def beside(
-    mechanism: Mechanism, counterweights: Amount | Mapping[str, Amount] | None, cams: Iterable[str] | None
+    mechanism: Mechanism,
+    counterweights: Amount | Mapping[str, Amount] | None,
+    cams: Iterable[str] | None,
+    torsion: Iterable[str] | None,
+    tune: Iterable[str] | None,
 ) -> tuple[Block, ...]:
-    """Those of counterweights and cams; see `ProblemOptions`.
+    """Those of counterweights, cams, torsion springs and springs of the file; see `ProblemOptions`.
 
     Raises:
-        InputError: no such body or joint.
+        InputError: no such body, joint or spring, or one of which nothing can be chosen.
     """
     weights = () if counterweights is None else CounterweightBlock.each(mechanism, counterweights)
-    return (*weights, *CamBlock.each(mechanism, cams or ()))
+    cams = CamBlock.each(mechanism, cams or ())
+    return (*weights, *cams, *SetBlock.torsion(mechanism, torsion or ()), *SetBlock.of_file(mechanism, tune or ()))

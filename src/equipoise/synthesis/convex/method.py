@@ -23,6 +23,7 @@ from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
 from .block_sets import FEASIBLE
+from .brought import brought
 from .cam_block import CamBlock
 from .candidates import front_row, load_residuals, with_parts
 from .counterweight_block import CounterweightBlock
@@ -178,6 +179,7 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
         loads=load_residuals(goal, found.parts),
         front=tuple(_rows(search)) if options.front else (),
         by_chance=found.by_chance,
+        brought=brought(reduced) if problem.objective == "rms" else {},
         goal=problem.mechanism.goal,
     ).with_provenance()
     if options.exact and not _exact(design, problem):

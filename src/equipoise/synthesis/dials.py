@@ -13,14 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...energy.evaluate import Potential
-from ...kinematics import Tree
-from ...model.arrays import Array
-from ...model.elements import Element
-from ...model.elements.laws import Compression, Extension, Gas, Linear
-from ...model.elements.laws.constant import ConstantForce, ConstantTorque
-from ...model.errors import Fault, InputError, nearest
-from ...model.mechanism import Mechanism
+from ..energy.evaluate import Potential
+from ..kinematics import Tree
+from ..model.arrays import Array
+from ..model.elements import Element
+from ..model.elements.laws import Compression, Extension, Gas, Linear
+from ..model.elements.laws.constant import ConstantForce, ConstantTorque
+from ..model.errors import Fault, InputError, nearest
+from ..model.mechanism import Mechanism
 
 WIDE = 1000.0  # times what the file has: as far as a rate, a force or a mass goes where nothing limits it
 ONE_NEWTON = 1.0  # of which an initial tension that is zero in the file is a thousandth
