@@ -18,8 +18,10 @@ from mpmath import acos, diff, mp, mpf, sqrt
 import equipoise as eq
 from equipoise.hardware.stock.made_up import made_up_catalogue
 from equipoise.io.mjcf import to_text
+from equipoise.kinematics import Tree
 from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.model.rotation import about
+from equipoise.report.skeleton import Skeleton
 from equipoise.simulate.release import release
 
 G = 9.81
@@ -212,6 +214,52 @@ def test_a_cam_is_written_read_and_drawn(tmp_path: Path, run: Any) -> None:
     code, _, err = run("design", file, "--joint", "elbow")
     assert code == 2
     assert "is for --method cam" in err
+
+
+def test_a_profile_that_does_not_give_its_energy_is_no_balance(tmp_path: Path, run: Any) -> None:
+    file, bad = tmp_path / "cam.yaml", tmp_path / "bad.yaml"
+    design = _designed().mechanism
+    eq.save(design, file)
+    assert run("check", file)[0] == 0
+    cam = design.springs[0]
+    thick = replace(cam.law.made, profile=tuple((1.03 * x, 1.03 * y) for x, y in cam.law.made.profile))
+    eq.save(design.with_springs([cam.changed(made=thick)]), bad)
+    code, text, _ = run("check", bad)
+    assert code == 1
+    assert "its torque differs by up to" in text
+    assert run("report", bad, "-o", tmp_path / "bad.html")[0] in (0, 1)
+    page = (tmp_path / "bad.html").read_text(encoding="utf-8")
+    assert "its torque differs by up to" in page
+    assert "Profile of elbow cam" in page
+
+
+def test_the_angles_that_are_given_become_the_range_of_the_joint() -> None:
+    free = replace(arm(-0.9, 0.9), joints=(replace(arm(-0.9, 0.9).joints[0], range=None),))
+    design = eq.design(free, "cam", range=(-0.5, 0.7))
+    assert design.mechanism.joints[0].range == (-0.5, 0.7)
+    assert entry(design)["made"]["faults"] == []
+
+
+def test_pictures_have_the_cable_where_it_leaves_the_profile() -> None:
+    for options in ({}, {"fixed_to": "parent"}, {"follower": "roller"}):
+        mechanism = eq.design(arm(-0.9, 0.9), "cam", **options).mechanism
+        cam = mechanism.springs[0].law.made
+        tree = Tree.of(mechanism)
+        q = np.linspace(-0.85, 0.85, 7)[:, None]
+        poses = tree.poses(q)
+        line = np.stack([point.at(poses) for point in Skeleton.of(mechanism).springs[0]], axis=1)[:, :, [0, 2]]
+        if cam.roller is not None:
+            centre, rim = line[:, 1:25].mean(axis=1), line[:, 27:]
+            gap = np.linalg.norm(rim - centre[:, None], axis=2).min(axis=1)
+            np.testing.assert_allclose(gap, cam.roller.radius, atol=2e-4)  # it touches, and nothing is inside
+            continue
+        fixed, contact, rim = line[:, 0], line[:, 1], line[:, 2:]
+        along = (fixed - contact) / np.linalg.norm(fixed - contact, axis=1)[:, None]
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        height = np.einsum("nij,nj->ni", rim - contact[:, None], across)  # all of the rim is on one side of the cable
+        assert np.minimum(np.abs(height.min(axis=1)), np.abs(height.max(axis=1))).max() < 2e-4
+        lever = np.abs(np.einsum("ni,ni->n", contact, across))
+        np.testing.assert_allclose(lever, np.interp(q[:, 0], cam.run.angle, np.abs(cam.run.lever)), rtol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -100,6 +100,14 @@ class Balance(Shown):
         used = zip(self.mechanism.springs, self.use, strict=True)
         return [(spring.name, one) for spring, use in used for one in use.reached if one.state.limit]
 
+    @property
+    def unmade(self) -> list[tuple[str, str]]:
+        """The names of springs that what they are made of does not give, each with what is wrong there."""
+        made = (
+            (one.name, one.law.comparison(*use.path)) for one, use in zip(self.mechanism.springs, self.use, strict=True)
+        )
+        return [(name, fault) for name, found in made if found is not None for fault in found.faults]
+
     @cached_property
     def relative(self) -> float:
         """Largest residual torque of any coordinate over the largest unbalanced one of the same unit (inf over 0)."""

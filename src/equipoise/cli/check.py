@@ -28,7 +28,8 @@ def check(
 ) -> None:
     """Is it balanced? Energies, residual torque, certificate, worst pose.
 
-    Exit code 1 when it is not, or when a spring is over-stretched, solid or past its stroke in the workspace.
+    Exit code 1 when it is not, or when a spring is over-stretched, solid or past its stroke in the workspace,
+    or when the profile of a cam does not give its energy.
 
     Example: [bold]equipoise check arm.yaml --tolerance 1%[/bold]
     """
@@ -82,4 +83,4 @@ def check(
             terminal.show(iter(["at the payload with the largest residual; the whole range:", sweep_table(swept)]))
         if follows := next_step(balance, file):
             terminal.show(iter([follows]))
-    raise typer.Exit(0 if good and not balance.passed else 1)
+    raise typer.Exit(0 if good and not balance.passed and not balance.unmade else 1)

@@ -12,6 +12,7 @@ from ..model.arrays import Array
 from ..model.elements import Element
 from ..model.elements.cam_outline import closed, shaft
 from ..model.elements.laws import Cam
+from ..model.elements.laws.comparison import Comparison
 from ..model.elements.laws.profile import Profile
 from ..model.elements.plane import Plane
 from ..model.errors import Fault, InputError, nearest
@@ -25,7 +26,6 @@ AXIS = (6.0, 1.2, 0.6, 1.2)
 DASHED = (2.0, 1.0)
 ROUND = np.linspace(0, 2 * np.pi, 73)
 WIDE = 1.9  # [mm] of a letter, at most
-LONG = 60  # letters of the longest line, about
 
 
 def cam_of(mechanism: Mechanism, name: str | None = None) -> tuple[Element, Profile]:
@@ -75,10 +75,11 @@ def cam_drawing(mechanism: Mechanism, name: str | None = None) -> Drawing:
     rim = MM * closed(made)
     rim = np.vstack([rim, rim[:1]])
     fixed, line = _behind(made)
-    marks = np.vstack([rim, fixed, line, [[-CROSS, -CROSS], [CROSS, CROSS]]])
-    texts = list(_texts(cam, made, plane))
+    reference = max(float(np.hypot(*rim.T).max()), 10.0) + 6
+    marks = np.vstack([rim, fixed, line, [[-CROSS, -CROSS], [reference + CROSS, CROSS]]])
+    texts = list(_texts(mechanism, cam, made, plane))
     low, high = marks.min(axis=0) - EDGE, marks.max(axis=0) + EDGE
-    wide = max(high[0] - low[0] + 30, WIDE * LONG)
+    wide = max(high[0] - low[0], WIDE * max(map(len, texts)) + 2 * EDGE)
     drawing = Drawing(float(wide), float(high[1] - low[1] + ROW * (len(texts) + 2)))
     at = np.array([-low[0], drawing.height - high[1]])
 
@@ -93,7 +94,6 @@ def cam_drawing(mechanism: Mechanism, name: str | None = None) -> Drawing:
     for cross in ([[-CROSS, 0], [CROSS, 0]], [[0, -CROSS], [0, CROSS]]):
         pen(np.array(cross), pattern=())
         pen(np.array(cross) + fixed)
-    reference = max(float(np.hypot(*rim.T).max()), 10.0) + 6
     pen(np.array([[0, 0], [reference, 0]]), pattern=AXIS)
     pen(line, pattern=DASHED)
     if made.roller is not None:
@@ -140,17 +140,26 @@ def _inside(points: Array, rim: Array, by: float) -> Array:
     return points + by * normal * np.sign(((middle - points) * normal).sum())
 
 
-def _texts(cam: Element, made: Profile, plane: Plane) -> Iterator[str]:
-    run, law = made.run, made.spring.law
+def _used(mechanism: Mechanism, cam: Element, made: Profile) -> Comparison:
+    """How the profile does within the range of its joint, or all along where that is not one joint's."""
+    limits = next((j.range for j in mechanism.joints if cam.joints == ((j.name, 1.0),)), None)
+    run = made.run
+    low, high = limits or (float(run.angle[0]), float(run.angle[-1]))
+    return Comparison.of(made, cam.law, low, high)
+
+
+def _texts(mechanism: Mechanism, cam: Element, made: Profile, plane: Plane) -> Iterator[str]:
+    use, law = _used(mechanism, cam, made), made.spring.law
+    run = use.used
     bodies = {"child": plane.child, "parent": plane.parent}
     other = bodies["parent" if made.fixed_to == "child" else "child"]
     yield f"{cam.name}, 1 : 1, in mm"
     yield f"turns with {bodies[made.fixed_to]}; x is that of {other} where {cam.where} is at 0 deg"
     axis = ", ".join(f"{value:.3g}" for value in plane.axes[2] + 0.0)
     yield f"seen against the axis ({axis}) of {plane.child}: it turns anticlockwise"
-    low, high = degrees(run.angle[0]), degrees(run.angle[-1])
+    low, high = degrees(use.low), degrees(use.high)
     size = f"{MM * run.reach.min():.4g} to {MM * run.reach.max():.4g} from the axis"
-    yield f"profile from {low:.4g} to {high:.4g} deg, {size}"
+    yield f"used from {low:.4g} to {high:.4g} deg of {cam.where}, {size}"
     part = f" '{made.spring.part}'" if made.spring.part else ""
     yield f"{law.noun}{part}: {law.words()}"
     force = f"{run.force.min():.4g} to {run.force.max():.4g} N"

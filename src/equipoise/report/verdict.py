@@ -55,6 +55,9 @@ def next_step(balance: Balance, file: Path) -> str:
     name = shlex.quote(str(file))
     if not balance.mechanism.springs:
         return "" if balance.exact else f"next: equipoise design {name} -o balanced.yaml    finds springs for it"
+    if cams := [one.name for one in balance.mechanism.springs if one.law.comparison(0.0, 0.0) is not None]:
+        cut = f"--to dxf --cam {shlex.quote(cams[0])} -o cam.dxf"
+        return f"next: equipoise export {name} {cut}    draws the profile to cut"
     if balance.relative < EXACT:
         return f"next: equipoise hardware {name}    says which springs to buy or wind"
     return f"next: equipoise design {name} -o better.yaml    finds the best springs to compare with"

@@ -20,6 +20,7 @@ from ..numbers import percent, torque
 from ..schematic import symbols
 from ..text import reached
 from . import pictures
+from .cams import cams
 from .content import Block, Cell, Code, Items, Number, Paragraph, Section, Table
 
 HEADS = {
@@ -46,7 +47,7 @@ def mechanism_section(balance: Balance) -> Section:
     looks: tuple[Block, ...] = (pictures.two_poses(balance), pictures.scheme(balance))
     if not balance.mechanism.springs:
         return Section("Mechanism", (*looks, Paragraph("It has no springs.")))
-    return Section("Mechanism and springs", (*looks, *springs_tables(balance), *_attachments(balance)))
+    return Section("Mechanism and springs", (*looks, *springs_tables(balance), *_attachments(balance), *cams(balance)))
 
 
 def springs_tables(balance: Balance) -> list[Table]:

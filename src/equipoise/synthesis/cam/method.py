@@ -26,7 +26,7 @@ from ..given import number
 from ..method import Method
 from ..options import takes
 from .make import made
-from .options import CamOptions, between, wishes_of
+from .options import CamOptions, between, limited, wishes_of
 from .search import PARTS, Search, Wishes, usable
 from .springs import KINDS, Offer
 from .terms import terms
@@ -51,9 +51,9 @@ def design(mechanism: Mechanism, options: CamOptions) -> Design:
             raise InputError(Fault((name,), f"unknown value '{getattr(options, name)}'", choices))
     if options.of is not None:
         return _of_a_cam(mechanism, options.of, options)
-    load = mechanism if options.keep else mechanism.with_springs(())
-    joints = terms(mechanism, options.joint)
-    whole = wanted(load, joints, between(options))
+    joints, ends = terms(mechanism, options.joint), between(options)
+    load = limited(mechanism if options.keep else mechanism.with_springs(()), joints, ends)
+    whole = wanted(load, joints, ends)
     half = BIAS * whole.peak / 2
     parts = [whole] if options.sides == "one" else [whole.plus(half, 0.5), whole.plus(-half, 0.5)]
     names, cams = Names(spring.name for spring in load.springs), []

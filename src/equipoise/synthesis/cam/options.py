@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import atan2, hypot, nan, pi
+from dataclasses import dataclass, replace
+from math import atan2, hypot, inf, nan, pi
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ...model.elements.laws.law import Terms
 from ...model.elements.laws.profile import FIXED_TO
 from ...model.elements.plane import Plane
 from ...model.errors import Fault, InputError
-from ...model.mechanism import Mechanism
+from ...model.mechanism import Joint, Mechanism
 from ...model.units import Amount, quantity
 from ..given import number
 from ..mounts import Mounts
@@ -47,7 +47,8 @@ class CamOptions(MethodOptions):
         guide: whether the spring is behind a guide at the fixed point.
         roller: its radius; offset: of its line [m]; lean: of its pressure at most [rad].
         cable: diameter [m]; friction: share of the torque.
-        range: the angles that count [rad], by default the joint's.
+        range: the angles that count [rad], by default the joint's; they become its range where it has none or a wider
+            one, as its cam ends there.
         seed: of the search.
     """
 
@@ -90,6 +91,20 @@ def between(options: CamOptions) -> tuple[float, float] | None:
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise InputError(Fault(("range",), "expected two angles, the lower one first, such as -30deg,60deg"))
     return ends[0], ends[1]
+
+
+def limited(mechanism: Mechanism, joints: Terms, ends: tuple[float, float] | None) -> Mechanism:
+    """The mechanism whose joint ends where its cam does; a sum of joints stays as it is."""
+    if ends is None or joints != ((joints[0][0], 1.0),):
+        return mechanism
+    low, high = ends
+
+    def within(joint: Joint) -> Joint:
+        lower, upper = joint.range or (-inf, inf)
+        return replace(joint, range=(max(low, lower), min(high, upper)))
+
+    found = (within(joint) if joint.name == joints[0][0] else joint for joint in mechanism.joints)
+    return replace(mechanism, joints=tuple(found))
 
 
 def wishes_of(load: Mechanism, joints: Terms, options: CamOptions) -> Wishes:

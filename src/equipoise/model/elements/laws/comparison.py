@@ -68,7 +68,7 @@ class Comparison:
             return ("what runs on the profile leaves it: along its points the joint's angle goes back",)
         found = []
         if self.share > CLOSE:
-            found.append(f"its torque differs by up to {self.off:.3g} N m, {100 * self.share:.2g} % of its peak")
+            found.append(f"its torque differs by up to {self.off:.3g} N m, {100 * self.share:.3g} % of its peak")
         if not (run.force > 0).all():
             found.append("its spring goes slack")
         for state in law.states:
@@ -102,7 +102,7 @@ class Comparison:
         how = "a cable to" if self.made.cable else "a roller under"
         size = f"{_to(1e3 * run.reach)} mm from the axis"
         return f"profile: {size}, {how} {spring}; its torque is that of the energy within " + (
-            f"{100 * self.share:.2g} % of the peak" if isfinite(self.share) else "no bound"
+            f"{100 * self.share:.3g} % of the peak" if isfinite(self.share) else "no bound"
         )
 
 
