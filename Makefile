@@ -9,7 +9,7 @@ PYTEST := $(BIN)/python -m pytest
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-all deep mutants coverage lint format docs bench bare constraints clean
+.PHONY: help demo test test-all deep mutants coverage verification lint format docs bench bare constraints clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -50,6 +50,9 @@ coverage: $(STAMP) ## branch coverage of energy, balance, synthesis and hardware
 	@$(BIN)/python $(PIP) install -c constraints.txt --group mutation
 	$(BIN)/python -m coverage run --branch --source=src/equipoise -m pytest -q -m "not slow"
 	$(BIN)/python -m coverage report --include='*/energy/*,*/balance.py,*/synthesis/*,*/hardware/*'
+
+verification: $(STAMP) ## the verification manual, docs/verification.md
+	$(BIN)/python tests/verification.py --write
 
 lint: $(STAMP) ## style, format, types, import contracts and circles
 	$(BIN)/ruff check

@@ -61,6 +61,8 @@ def _strengthened(claims: dict[str, Any], rng: np.random.Generator) -> str:
         claim["springs"] += 1
     elif name == "bound":
         claim["at_least"] = str(number(claim["at_least"]) * (1 + STRONGER))
+    elif name == "closed":
+        claim["energy"] = str(number(claim["energy"]) * (1 - STRONGER))
     else:
         joint = str(rng.choice([*claim["at_most"]]))
         claim["at_most"][joint] = str(number(claim["at_most"][joint]) * (1 - STRONGER))
@@ -73,7 +75,7 @@ def _restructured(found: dict[str, Any], rng: np.random.Generator) -> str:
     lists = [mechanism[key] for key in ("joints", "masses", "springs", "coordinates") if mechanism[key]]
     if "fewest" in claims:
         lists.append(claims["fewest"]["links"])
-    if proof:
+    if "bound" in claims:
         lists += [proof["bound"]["trial"], *(own for own in proof["bound"]["pairs"] if own), claims["bound"]["pairs"]]
     chosen = lists[int(rng.integers(len(lists)))]
     i = int(rng.integers(len(chosen)))
@@ -93,7 +95,7 @@ def holds(document: dict[str, Any]) -> bool:
         if not _hangs(document["mechanism"]):
             return False
         enclosure = Enclosure(document["mechanism"])
-        checks = {"torque": _torque, "bound": _bound, "fewest": _fewest}
+        checks = {"torque": _torque, "bound": _bound, "fewest": _fewest, "closed": _closed}
         return all(
             checks[name](enclosure, claim, document["proof"].get(name)) for name, claim in document["claims"].items()
         )
@@ -110,7 +112,8 @@ def _hangs(mechanism: dict[str, Any]) -> bool:
         there.add(joint["child"])
     held = {mass["body"] for mass in (*mechanism["masses"], *mechanism["spring_masses"])}
     held |= {one[key] for one in mechanism["springs"] for key in ("body_a", "body_b") if key in one}
-    return held <= there
+    motions = [m for joint in mechanism["joints"] for m in (*joint["turns"], *joint["slides"])] + mechanism["springs"]
+    return held <= there and {x for m in motions for x in m.get("by", ())} <= {*mechanism["coordinates"]}
 
 
 def _torque(enclosure: Enclosure, claim: dict[str, Any], _: Any) -> bool:
@@ -119,6 +122,18 @@ def _torque(enclosure: Enclosure, claim: dict[str, Any], _: Any) -> bool:
         return False
     most = dict(zip(enclosure.names, enclosure.torque(within), strict=True))
     return most.keys() == claim["at_most"].keys() and all(x <= number(claim["at_most"][n]) for n, x in most.items())
+
+
+def _closed(enclosure: Enclosure, claim: dict[str, Any], proof: list[Any]) -> bool:
+    within = {name: abs(number(x)) for name, x in claim["within"].items()}
+    if not {*enclosure.powers} <= {*within}:
+        return False
+    total = dict(enclosure.energy())
+    for i, body, *force in proof:
+        for terms, x in zip(enclosure.gap(claim["loops"][i], body), force, strict=True):
+            for key, c in terms.items():
+                total[key] = total.get(key, 0) + c * enclosure.number(x)
+    return enclosure.varies(total, within) <= number(claim["energy"])
 
 
 def _bound(enclosure: Enclosure, claim: dict[str, Any], proof: dict[str, Any]) -> bool:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import warnings
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from campaign import some
 from certified import EXACT, bounded, certificate, document, mixed
 from example_files import FOLDER
+from peers import robot_files
 
 import equipoise as eq
-from equipoise.model.errors import NoFourierForm
+from equipoise.model.errors import EquipoiseWarning, NoFourierForm
 from equipoise.proof.certificate import Refused
 from equipoise.proof.statement import rounded
 
@@ -35,6 +38,17 @@ def test_every_kind_of_joint_and_spring_is_covered():
     balance = eq.check(mixed(), samples=500)
     peak = dict(zip(balance.coordinates, balance.residual.max, strict=True))
     assert all(peak[name] <= float(most) for name, most in claim["at_most"].items())
+
+
+@pytest.mark.parametrize("name", ["pantograph", "four_bar"])
+def test_loops_are_held_by_forces_across_them(name):
+    """With relations between the joints, and with a force that shares the coupler's weight."""
+    found = document(name)
+    assert eq.verify(found) == ("closed",)
+    assert float(found["claims"]["closed"]["energy"]) < 1e-12
+    found["mechanism"]["masses"][0]["mass"] = "3/2"
+    with pytest.raises(Refused, match="where the loops close"):
+        eq.verify(found)
 
 
 def test_the_bound_is_that_of_the_design():
@@ -113,3 +127,24 @@ def test_the_answer_no(run, tmp_path):
     assert run("verify", tmp_path / "none.json")[0] == 2
     with pytest.raises(Refused):
         eq.verify({})
+
+
+ROBOTS = (
+    "ur3_robot", "ur5_robot", "ur10_robot", "ur3_joint_limited_robot", "ur5_joint_limited_robot", "xarm7", "panda",
+    "kinova", "so100", "so101", "z1", "talos_left_arm", "finger_edu", "double_pendulum", "double_pendulum_continuous",
+    "solo", "solo12", "bolt", "hyq_no_sensors", "allegro_left_hand",
+)  # fmt: skip
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", some(ROBOTS, here=["double_pendulum"]))
+def test_designs_of_robots_are_certified(name):
+    """Two springs between neighbours, whatever they leave: the torque is bounded, and more springs are needed."""
+    (path,) = (path for path in robot_files("example-robot-data", ".urdf") if path.stem == name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EquipoiseWarning)
+        mechanism = eq.load(path)
+    design = eq.design(mechanism, span=1, springs=2, radius=0.15, unlimited=True)
+    found = eq.certify(design.mechanism)
+    assert eq.verify(found) == tuple(found.claims)
+    assert "torque" in found.claims

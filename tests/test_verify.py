@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.proof.certificate import Refused
 
 ALONE = Path(eq.__file__).parent / "proof" / "verify.py"
-TARGETS = ("bounded", "mixed", "lee2014_table5a", "lenzo_layout_b", "pendulum", "bounded")
+TARGETS = ("bounded", "mixed", "lee2014_table5a", "lenzo_layout_b", "pendulum", "four_bar")
 
 
 def accepted(found: object) -> bool:
@@ -48,7 +48,7 @@ def test_what_is_tampered_with_is_refused(seeds):
     assert false > len(seeds) / 2
 
 
-@pytest.mark.parametrize("name", ["bounded", "mixed", "lee2014_table5a"])
+@pytest.mark.parametrize("name", ["bounded", "mixed", "lee2014_table5a", "four_bar"])
 def test_the_other_evaluation_accepts_what_is_not_tampered_with(name):
     assert holds(document(name))
 

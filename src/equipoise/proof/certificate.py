@@ -28,6 +28,7 @@ from ..synthesis.fewest import Fewest, fewest
 from ..synthesis.problem import Problem
 from ..synthesis.region import Region
 from . import verify as alone
+from .closed import forces, pairs_of_points, tree_of
 from .dual import lower_bound
 from .enclosure import Enclosure
 from .statement import rounded, text, written
@@ -85,9 +86,13 @@ def certify(mechanism: Source, *, stiffness: Amount = STIFFNESS, problem: Proble
         InputError: python-flint is not installed.
     """
     mechanism = loaded(mechanism)
+    if mechanism.loops:
+        return _of_loops(mechanism)
     data = written(mechanism)
     enclosure = Enclosure(data)
-    claims, proof, left_out = {"torque": _torque(mechanism, enclosure)}, {}, {}
+    claims: dict[str, Any] = {"torque": _torque(mechanism, enclosure)}
+    proof: dict[str, Any] = {}
+    left_out: dict[str, str] = {}
     try:
         limit = quantity(stiffness, "stiffness", "stiffness")
         claims["bound"], proof["bound"] = _bound(problem or _designed_for(mechanism), enclosure, limit)
@@ -98,15 +103,27 @@ def certify(mechanism: Source, *, stiffness: Amount = STIFFNESS, problem: Proble
         left_out["fewest"] = "no planar section that gravity loads was found"
     else:
         claims["fewest"] = _fewest(mechanism, found)
-    document = {
-        "format": FORMAT,
-        "of": mechanism.name,
-        "program": f"equipoise {__version__}",
-        "claims": claims,
-        "mechanism": data,
-        "proof": proof,
-    }
-    return Certified(document, left_out)
+    return Certified(_document(mechanism, data, claims, proof), left_out)
+
+
+def _document(
+    mechanism: Mechanism, data: dict[str, Any], claims: dict[str, Any], proof: dict[str, Any]
+) -> dict[str, Any]:
+    head = {"format": FORMAT, "of": mechanism.name, "program": f"equipoise {__version__}"}
+    return {**head, "claims": claims, "mechanism": data, "proof": proof}
+
+
+def _of_loops(mechanism: Mechanism) -> Certified:
+    """That the energy hardly varies: the torque at the actuators follows where the loops are not singular."""
+    tree = tree_of(mechanism)
+    data, loops = written(tree), pairs_of_points(mechanism)
+    enclosure = Enclosure(data)
+    within = _within(tree, enclosure)
+    most, proof = forces(enclosure, loops, within)
+    claim = {"energy": rounded(most + FLOOR, up=True), "within": _texts(within), "loops": loops}
+    why = "loops: what holds at closed poses is about the energy"
+    left_out = dict.fromkeys(("torque", "bound", "fewest"), why)
+    return Certified(_document(mechanism, data, {"closed": claim}, {"closed": proof}), left_out)
 
 
 def verify(certificate: Certified | Mapping[str, Any] | str | os.PathLike[str]) -> tuple[str, ...]:
@@ -129,13 +146,22 @@ def verify(certificate: Certified | Mapping[str, Any] | str | os.PathLike[str]) 
 
 
 def _torque(mechanism: Mechanism, enclosure: Enclosure) -> dict[str, Any]:
-    sizes = dict(zip(enclosure.names, reach(Tree.of(mechanism)).tolist(), strict=True))
-    within = {name: Fraction(sizes[name]) for name in enclosure.powers}
+    within = _within(mechanism, enclosure)
     most = [rounded(x + FLOOR, up=True) for x in enclosure.torque(within)]
     return {
         "at_most": dict(zip(enclosure.names, most, strict=True)),
-        "within": {name: text(x) for name, x in within.items()},
+        "within": _texts(within),
     }
+
+
+def _within(mechanism: Mechanism, enclosure: Enclosure) -> dict[str, Fraction]:
+    """How far the coordinates go of which the energy has powers."""
+    sizes = dict(zip(enclosure.names, reach(Tree.of(mechanism)).tolist(), strict=True))
+    return {name: Fraction(sizes[name]) for name in enclosure.powers}
+
+
+def _texts(numbers: Mapping[str, Fraction]) -> dict[str, str]:
+    return {name: text(x) for name, x in numbers.items()}
 
 
 def _bound(problem: Problem, enclosure: Enclosure, stiffness: float) -> tuple[dict[str, Any], dict[str, Any]]:

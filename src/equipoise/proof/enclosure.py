@@ -80,6 +80,24 @@ class Enclosure:
                 bound[j] += size * degrees[j] * _powers(reach, lower) if degrees[j] else 0
         return bound
 
+    def varies(self, terms: Mapping[Key, Any], within: Mapping[str, Fraction]) -> Fraction:
+        """How far a sum is from a constant at most."""
+        reach, n = [within.get(name, Fraction(1)) for name in self.names], len(self.names)
+        parts = (_upper(abs(c)) * _powers(reach, key[n:]) for key, c in terms.items() if any(key))
+        return sum(parts, Fraction(0))
+
+    def gap(self, ends: Mapping[str, Any], body: str) -> list[dict[Key, Any]]:
+        """From a point of one body to one of another, its three components in the frame of a body [m]."""
+        parts: dict[str, list[Terms]] = {}
+        for end, sign in (("a", -1), ("b", 1)):
+            own = ends[f"body_{end}"]
+            parts.setdefault(own, []).append({self.zero: self._column(ends[f"p_{end}"], Fraction(sign))})
+            for X, step in self._origin(own):
+                parts.setdefault(X, []).append({key: c * self._exact(sign) for key, c in step.items()})
+        each = [_product(self._relative(body, X), summed) for X, own in parts.items() if (summed := _sum(own))]
+        total = _sum(each)
+        return [{key: c[i, 0] for key, c in total.items()} for i in range(3)]
+
     def form(self, body_a: str, body_b: str, lift: Sequence[Sequence[float]]) -> Terms:
         """Half the square of the stretch of a spring between two bodies, (7, 7) in y: its ends are ``lift @ y``."""
         matrix, exact = self.flint.acb_mat, self._exact

@@ -1,7 +1,7 @@
 """Check a certificate of balance (docs/certificates.md) by Python's standard library alone: python verify.py CERT.json
 
 All is derived again from the mechanism's numbers, which are rational. What is not, sines and roots, is enclosed by
-integers in units of 2**-BITS, with a radius. An energy is a finite sum ``sum c q^d exp(ik.q)``, and numbers are too.
+whole numbers of 2**-BITS, with a radius. An energy is a sum ``sum c q^d exp(ik.q)``, and so is every number.
 """
 
 import json
@@ -56,8 +56,7 @@ def number(text):
 
 
 def vector(texts):
-    x, y, z = map(number, texts)
-    return [x, y, z]
+    return [number(texts[i]) for i in range(3)]
 
 
 class Tree:
@@ -66,8 +65,8 @@ class Tree:
     def __init__(self, data):
         self.data, self.names, self.of = data, data["coordinates"], {"world": {}}
         self.zero, self.motions = (0,) * len(self.names), [m for j in data["joints"] for m in j["turns"] + j["slides"]]
-        ratios = [x for motion in self.motions + data["springs"] for x in motion.get("by", {}).values()]
-        self.unit = lcm(*(number(x).denominator for x in ratios))
+        ratios = [item for motion in self.motions + data["springs"] for item in motion.get("by", {}).items()]
+        self.unit = lcm(*(number(ratio).denominator for x, ratio in ratios if self.names.index(x) >= 0))
         self.eye = [[self.constant(i == j) for j in range(3)] for i in range(3)]
         for joint in data["joints"]:
             if joint["child"] in self.of or not {joint["parent"], joint["base"]} <= {*self.of}:
@@ -106,18 +105,13 @@ class Tree:
 
     def itself(self, motion):
         """The value of a motion: a sum of coordinates with ratios, and an offset."""
-        found = self.constant(number(motion["from"]))
-        for name, ratio in motion["by"].items():
-            power = [0] * len(self.zero)
-            power[self.names.index(name)] = 1
-            found += self.constant(number(ratio)) * Sum({(*self.zero, *power): (UNIT, 0, 0)})
-        return found
+        powers = {x: Sum({(*self.zero, *(int(x == name) for name in self.names)): (UNIT, 0, 0)}) for x in motion["by"]}
+        parts = (powers[x] * self.constant(number(ratio)) for x, ratio in motion["by"].items())
+        return sum(parts, self.constant(number(motion["from"])))
 
     def waves(self, motion, times=1):
         """The cosine and sine of such a value, or of a multiple."""
-        turn = [0] * len(self.zero)
-        for name, ratio in motion["by"].items():
-            turn[self.names.index(name)] = int(times * self.unit * number(ratio))
+        turn = (int(times * self.unit * number(motion["by"].get(x, "0"))) for x in self.names)
         half = self.circle(times * number(motion["from"])) * Sum({(*turn, *self.zero): (UNIT >> 1, 0, 0)})
         return half + half.conjugate(), half * self.constant(-1, i=1) + half.conjugate() * self.constant(1, i=1)
 
@@ -128,6 +122,10 @@ class Tree:
             found.append((joint["parent"], [x * self.constant(factor) for x in joint["step"]]))
             joint = self.of[joint["parent"]]
         return found
+
+    def between(self, ends):
+        (a, p_a), (b, p_b) = ((ends[f"body_{x}"], vector(ends[f"p_{x}"])) for x in "ab")
+        return self.point(b, p_b) + self.point(a, p_a, -1)
 
     def weight(self, springs):
         masses = self.data["masses"] + (self.data["spring_masses"] if springs else [])
@@ -147,9 +145,8 @@ class Tree:
                 for i, j in [(i, j) for i in many for j in many if j <= i]:
                     found[i][j] += dot(p[i], q[j])
             whole = [add([Sum()] * 3, *each) for each in zip([[Sum()] * 3] * len(many), *own, strict=True)]
-            if own and X != "world":
-                base, R = self.of[X]["base"], self.of[X]["R"]
-                hung.setdefault(base, []).append([[dot(row, v) for row in R] for v in whole])
+            if own and (joint := self.of[X]):
+                hung.setdefault(joint["base"], []).append([[dot(row, v) for row in joint["R"]] for v in whole])
         return found, whole
 
     def energy(self, springs):
@@ -163,31 +160,47 @@ class Tree:
                 for times, amounts in enumerate(one["waves"], 1):
                     U += dot([self.constant(number(x)) for x in amounts], self.waves(one, times))
             else:
-                d = self.point(one["body_b"], vector(one["p_b"])) + self.point(one["body_a"], vector(one["p_a"]), -1)
-                U += self.products([d])[0][0][0] * self.constant(number(one["stiffness"]) / 2)
+                U += self.products([self.between(one)])[0][0][0] * self.constant(number(one["stiffness"]) / 2)
         return {key: c for key, c in U.items() if any(key)}
 
 
-def check_torque(tree, claim, _):
-    """``|dU/dq_j| <= sum |c| |d/dq_j q^d exp(ik.q)|``, powers of what slides at the end of the claimed range."""
-    reach, n = {x: abs(number(text)) for x, text in claim["within"].items()}, len(tree.zero)
-    bound = dict.fromkeys(tree.names, Fraction(0))
-    for key, (a, b, r) in tree.energy(True).items():
-        powers = {x: d for x, d in zip(tree.names, key[n:], strict=True) if d}
+def sizes(tree, U, within):
+    """Of each term that varies: its frequencies, the slopes of its powers, and its size where what slides ends."""
+    reach = {x: abs(number(text)) for x, text in within.items()}
+    for key, (a, b, r) in U.items():
+        powers = {x: d for x, d in zip(tree.names, key[len(tree.zero) :], strict=True) if d}
         size = Fraction(isqrt(a * a + b * b) + 1 + 2 * r, UNIT) * prod(reach[x] ** d for x, d in powers.items())
-        for name, k in zip(tree.names, key[:n], strict=True):
-            bound[name] += size * (Fraction(abs(k), tree.unit) + (powers[name] / reach[name] if name in powers else 0))
-    for name in {*bound, *claim["at_most"]}:
-        if bound[name] > number(claim["at_most"][name]):
-            raise ValueError(f"the torque at {name!r} is not proved to be at most {claim['at_most'][name]}")
+        frequencies, slopes = dict(zip(tree.names, key, strict=False)), {x: d / reach[x] for x, d in powers.items()}
+        yield from [(frequencies, slopes, size)] if any(key) else []
+
+
+def check_torque(tree, claim, _):
+    """``|dU/dq_j| <= sum |c| |d/dq_j q^d exp(ik.q)|``."""
+    bound = dict.fromkeys(tree.names, Fraction(0))
+    for frequencies, powers, size in sizes(tree, tree.energy(True), claim["within"]):
+        for x, k in frequencies.items():
+            bound[x] += size * (Fraction(abs(k), tree.unit) + powers.get(x, 0))
+    for x in {*bound, *claim["at_most"]}:
+        if bound[x] > number(claim["at_most"][x]):
+            raise ValueError(f"the torque at {x!r} is not proved to be at most {claim['at_most'][x]}")
+
+
+def check_closed(tree, claim, forces):
+    """Where the loops close, constant forces across them, in frames of bodies, add nothing to the energy."""
+    U = Sum(tree.energy(True))
+    for i, body, *force in forces:
+        across = [tree.between(claim["loops"][i]), [(body, [*map(tree.constant, vector(force))])]]
+        U += tree.products(across)[0][1][0]
+    if sum(size for _, _, size in sizes(tree, U, claim["within"])) > number(claim["energy"]):
+        raise ValueError(f"the energy is not proved to vary by at most {claim['energy']} where the loops close")
 
 
 def check_bound(tree, claim, proof):
     """The root mean square of a torque is at least its mean product with a trial torque, over the size of that one.
 
-    The trial is the derivative of an energy, so that the product is a sum over the terms of both. That of a spring of
-    stiffness k is ``k y'S y`` with y = [1, u_a, u_b], where u are its ends in their regions' own coordinates. Where S
-    plus `shift`, less multiples of what is not negative there, is positive definite, it is at least ``-k shift``.
+    The trial is the derivative of an energy, so that the product is a sum over terms. That of a spring of stiffness k
+    is ``k y'S y`` with y = [1, u_a, u_b], where u are its ends in their regions' own coordinates. Where S plus `shift`,
+    less multiples of what is not negative there, is positive definite, it is at least ``-k shift``.
     """
     counted, trial = [number(claim["counted"].get(x, "0")) / tree.unit for x in tree.names], Sum()
     for *k, a, b in proof["trial"]:
@@ -205,11 +218,10 @@ def check_bound(tree, claim, proof):
                 raise ValueError("what slides has no mean over all configurations")
         return middle, radius
 
-    shift = abs(number(proof["shift"]))
     for pair, own in zip(claim["pairs"], proof["pairs"], strict=True):
         a, b, one, two = (pair[key] for key in ("body_a", "body_b", "region_a", "region_b"))
         half = [1, *vector(one["half"]), *vector(two["half"])]
-        columns = [tree.point(b, vector(two["centre"])) + tree.point(a, vector(one["centre"]), -1)]
+        columns = [tree.between({**pair, "p_a": one["centre"], "p_b": two["centre"]})]
         for i in range(1, 7):
             v = [half[i] * ((i - 1) % 3 == j) * (-1 if i < 4 else 1) for j in range(3)]
             columns.append([(a if i < 4 else b, [*map(tree.constant, v)])])
@@ -221,10 +233,9 @@ def check_bound(tree, claim, proof):
                 form = [(0, 0, 1), *((x, x, -1) for x in ((1, 2, 3), (4, 5, 6))[i > 3])]
             elif kind != "box" or not {s, t} <= {1, -1} or not {i, j} <= {*range(1, 7)}:
                 raise ValueError(f"no region keeps {[kind, i, s, j, t]}")
-            for x, y, factor in form:
+            for x, y, factor in form + [(y, x, factor) for x, y, factor in form]:
                 S[x][y] -= abs(number(amount)) * factor / 2
-                S[y][x] -= abs(number(amount)) * factor / 2
-        S[0][0] += shift
+        S[0][0] += abs(number(proof["shift"]))
         used, off = [i for i in range(7) if half[i]], 7 * max(radius for row in means for _, radius in row)
         S = [[S[i][j] - off * (i == j) for j in used] for i in used]
         while S:  # one step of Gauss's elimination
@@ -232,54 +243,42 @@ def check_bound(tree, claim, proof):
                 raise ValueError(f"the matrix of {a}:{b} is not positive definite")
             S = [[x - row[0] * y / S[0][0] for x, y in zip(row[1:], S[0][1:], strict=True)] for row in S[1:]]
     (middle, radius), (size, wide) = mean(tree.energy(False)), mean(trial)
-    least = middle - radius - shift * abs(number(claim["stiffness"]))
+    least = middle - radius - abs(number(proof["shift"]) * number(claim["stiffness"]))
     if least <= 0 or least**2 < number(claim["at_least"]) ** 2 * (size + wide):
         raise ValueError(f"it is not proved that at least {claim['at_least']} is left")
 
 
 def check_fewest(tree, claim, _):
     """A planar section needs as many springs as it has links that gravity loads (docs/theorems.md)."""
-    e, q = vector(claim["axis"]), [number(claim["held"].get(name, "0")) for name in tree.names]
-    R, head, moments, whole = {"world": tree.eye}, {"world": "world"}, {}, Fraction(0)
+    q, e = {x: number(claim["held"].get(x, "0")) for x in tree.names}, vector(claim["axis"])
 
-    def at(U):
-        """The value of a sum at q."""
-        total = Sum()
-        for key, c in U.items():
-            angle = sum((x * k for x, k in zip(q, key, strict=False)), Fraction(0)) / tree.unit
-            powers = prod((x**d for x, d in zip(q, key[len(q) :], strict=True)), start=Fraction(1))
-            total += Sum({tree.zero * 2: c}) * tree.circle(angle) * tree.constant(powers)
-        return total
+    def held(motion):
+        value = number(motion["from"]) + sum(q[x] * number(ratio) for x, ratio in motion["by"].items())
+        return {"axis": motion["axis"], "by": {}, "from": str(value)}
 
     def across(v):
         """How much of a vector is at right angles to the axis, and how large it is; by the middles of the balls."""
         x = [Fraction(one.get(tree.zero * 2, (0, 0, 0))[0], UNIT) for one in v]
         return sum(abs(x[i - 2] * e[i - 1] - x[i - 1] * e[i - 2]) for i in range(3)), sum(map(abs, x))
 
-    for body, joint in [*tree.of.items()][1:]:
-        columns = [[*map(at, column)] for column in zip(*joint["R"], strict=True)]
-        R[body] = [[dot(row, column) for column in columns] for row in R[joint["base"]]]
+    joints = [{**j, **{key: [*map(held, j[key])] for key in ("turns", "slides")}} for j in tree.data["joints"]]
+    still, head, moments, whole = Tree({**tree.data, "joints": joints, "springs": []}), {"world": "world"}, {}, 0
+    for body, joint in [*still.of.items()][1:]:
         head[body] = body if body in claim["links"] else head[joint["base"]]
-    for X, v in tree.weight(False):
-        v = [dot(row, [*map(at, v)]) for row in R[X]]
-        moments[head[X]], whole = add(moments.get(head[X], [Sum()] * 3), v), whole + across(v)[1]
+    for X, v in still.weight(False):
+        moments.setdefault(head[X], []).append((X, v))
+        whole += across(v)[1]
     level, g = across([tree.constant(number(x)) for x in tree.data["gravity"]])
     for body in {*claim["links"]}:
-        turns, driven = tree.of[body]["turns"], [x for motion in tree.motions for x in motion["by"]]
-        own = [turn for turn in turns if turn["by"]]
-        if any(driven.count(*turn["by"]) != 1 for turn in own) or own != turns[-len(own) :] or len(own) not in (1, 3):
-            raise ValueError(f"{body!r} does not turn by itself")
-        axis = [dot(row, tree.along(own[0])) for row in R[body]]
+        own, driven = [m for m in tree.of[body]["turns"] if m["by"]], [x for m in tree.motions for x in m["by"]]
+        load, axis = still.products([moments[body], [(body, tree.along(own[0]))]], squares=False)[1]
         ball = [turn["axis"] for turn in own] == [[str(int(i == j)) for j in range(3)] for i in range(3)]
-        if not ball and (len(own) > 1 or across(axis)[0] > PARALLEL * max(map(abs, e))):
-            raise ValueError(f"{body!r} does not turn about the axis of the section")
-        if across(moments[body])[0] * level <= LOADED * whole * g * sum(map(abs, e)) ** 2:
-            raise ValueError(f"gravity does not load {body!r}")
+        about = ball or (len(own) == 1 and across(axis)[0] <= PARALLEL * max(map(abs, e)))
+        alone = all(driven.count(*turn["by"]) == 1 for turn in own) and own == tree.of[body]["turns"][-len(own) :]
+        if not (about and alone and across(load)[0] * level > LOADED * whole * g * sum(map(abs, e)) ** 2):
+            raise ValueError(f"{body!r} does not turn by itself about the section's axis, or gravity does not load it")
     if len({*claim["links"]}) < claim["springs"]:
         raise ValueError(f"{claim['springs']} springs are not proved to be needed")
-
-
-CHECKS = {"torque": check_torque, "bound": check_bound, "fewest": check_fewest}
 
 
 def check(certificate):
@@ -287,8 +286,9 @@ def check(certificate):
     if certificate["format"] != "equipoise certificate 1" or not certificate["claims"]:
         raise ValueError("this is no certificate of equipoise, version 1")
     tree = Tree(certificate["mechanism"])
+    checks = {"torque": check_torque, "closed": check_closed, "bound": check_bound, "fewest": check_fewest}
     for name, claim in certificate["claims"].items():
-        CHECKS[name](tree, claim, certificate["proof"].get(name))
+        checks[name](tree, claim, certificate["proof"].get(name))
     return tuple(certificate["claims"])
 
 

@@ -16,6 +16,8 @@ def certificate_lines(found: Certified) -> Iterator[str]:
         least = ", ".join(f"{float(x):.3g} at {joint}" for joint, x in torque["at_most"].items())
         where = " within the ranges of what slides" if torque["within"] else ""
         yield f"{name}: proved at every configuration{where}: the torque is at most [N m or N] {least}"
+    if closed := claims.get("closed"):
+        yield f"{name}: proved wherever its loops close: the energy varies by at most {float(closed['energy']):.3g} J"
     if bound := claims.get("bound"):
         pairs = ", ".join(dict.fromkeys(f"{pair['body_a']}:{pair['body_b']}" for pair in bound["pairs"]))
         yield (

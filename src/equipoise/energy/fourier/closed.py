@@ -43,8 +43,7 @@ class ClosedEnergy(FourierEnergy):
     """
 
     def __init__(self, mechanism: Mechanism, max_terms: int = MAX_TERMS) -> None:
-        opened = _opened(mechanism)
-        super().__init__(opened, max_terms)
+        super().__init__(opened(mechanism), max_terms)
         frames = Frames(self.tree, max_terms)
         keys = np.hstack([np.rint(self.frequency * frames.denominators), self.degree]).astype(int)
         start = keys, self.c
@@ -104,7 +103,7 @@ def _unit(v: tuple[float, float, float]) -> Array:
     return np.array(v) / np.linalg.norm(v)
 
 
-def _opened(mechanism: Mechanism) -> Mechanism:
+def opened(mechanism: Mechanism) -> Mechanism:
     """The mechanism without loops, the linear relations between its joints as couplings."""
     linkage = Tree.of(mechanism)
     if not isinstance(linkage, Linkage):
