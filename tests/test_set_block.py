@@ -57,11 +57,11 @@ def test_it_does_what_its_element_does(kind):
 
 def test_torsion_springs_and_weights_are_never_worse_than_a_grid():
     """Rates, preloads and weights of a lamp with three parallel joints, on a grid, by the reference energy."""
-    design = eq.design(LAMP, pairs=[], torsion=["joint2", "joint3"], counterweights={"link4": 0.1}, residual=0.318)
+    design = eq.design(LAMP, pairs=[], torsion=["joint2", "joint3"], counterweights={"link3": 0.2}, residual=0.28)
     assert design.counterweights is not None
-    assert design.residual <= 0.318 * design.unbalanced * (1 + 1e-5)
+    assert design.residual <= 0.28 * design.unbalanced * (1 + 1e-5)
     assert design.counterweights.mass >= design.counterweights.bound > 0
-    free = eq.Problem.of(LAMP, pairs=[], torsion=["joint2", "joint3"], counterweights={"link4": 0.1})
+    free = eq.Problem.of(LAMP, pairs=[], torsion=["joint2", "joint3"], counterweights={"link3": 0.2})
     best = eq.solve(free)
     assert best.bound is not None
     assert best.residual >= best.bound * (1 - 1e-6)
@@ -70,9 +70,9 @@ def test_torsion_springs_and_weights_are_never_worse_than_a_grid():
     load = Potential(LAMP)(q).torque
     springs = (eq.TorsionSpring("t", ((f"joint{j}", 1.0),), 1.0, rest) for j in (2, 3) for rest in (0.0, 1.0))
     unit = [Potential(LAMP.with_springs([spring]))(q).torque - load for spring in springs]
-    weight = Potential(LAMP.with_masses([eq.PointMass("w", "link4", 1.0, (-0.1, 0, 0))]))(q).torque - load
+    weight = Potential(LAMP.with_masses([eq.PointMass("w", "link3", 1.0, (-0.2, 0, 0))]))(q).torque - load
     least = np.inf
-    for k2, r2, k3, r3, m in product((0, 0.5, 1, 2), (0, 3, 6), (0, 0.25, 0.5, 1), (0, 3, 6), (0, 0.15, 0.3, 0.6)):
+    for k2, r2, k3, r3, m in product((0, 0.5, 1, 2), (0, 3, 6), (0, 0.25, 0.5, 1), (0, 3, 6), (0, 0.4, 0.8, 1.2)):
         left = load + m * weight
         left = left + k2 * (unit[0] + r2 * (unit[1] - unit[0])) + k3 * (unit[2] + r3 * (unit[3] - unit[2]))
         least = min(least, float(np.sqrt((left**2).sum(axis=1).mean())))
