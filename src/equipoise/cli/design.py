@@ -98,6 +98,9 @@ def design(
     share_of: goals.ShareOf = None,
     joint_weight: goals.Weights = None,
     motion: goals.Motion = None,
+    prefer: Annotated[
+        str | None, typer.Option(help="force, energy, length or rate: least among equally good designs")
+    ] = None,
     front: Annotated[bool, typer.Option("--front", help="also the residual against the number of springs")] = False,
     exact: Annotated[bool, typer.Option("--exact", help="insist on exact balance; exit code 1 if infeasible")] = False,
     unlimited: Annotated[
@@ -168,6 +171,7 @@ def design(
         "unlimited": unlimited,
         "exact": exact,
         "front": front,
+        "prefer": prefer,
         "keep": keep,
         "seed": seed,
         "torsion": None if torsion is None else options.names(torsion),

@@ -58,15 +58,18 @@ def nearest_region(regions: Iterable[Region], p: Iterable[float]) -> Region:
 
 def project(u: Array, is_box: Booleans) -> Array:
     """The nearest point of each region: the unit box or the unit ball. u: (..., d), is_box: (...)."""
+    if is_box.all():
+        return np.clip(u, -1, 1)
     norm = np.linalg.norm(u, axis=-1, keepdims=True)
     return np.where(is_box[..., None], np.clip(u, -1, 1), u / np.maximum(norm, 1.0))
 
 
 def free_directions(u: Array, gradient: Array, is_box: Booleans) -> Array:
     """(..., d, d) projectors onto the steps that do not leave a region through its boundary, downhill of `gradient`."""
-    side = np.eye(u.shape[-1])
-    out_of_box = (np.abs(u) >= RIM) & (gradient * u < 0)
-    at_rim = (np.linalg.norm(u, axis=-1) >= RIM) & (np.einsum("...i,...i", gradient, u) < 0)
-    keep_box = np.where(out_of_box, 0.0, 1.0)[..., None] * side
+    side, outward = np.eye(u.shape[-1]), gradient * u
+    keep_box = np.where((np.abs(u) >= RIM) & (outward < 0), 0.0, 1.0)[..., None] * side
+    if is_box.all():
+        return keep_box
+    at_rim = ((u * u).sum(axis=-1) >= RIM**2) & (outward.sum(axis=-1) < 0)
     keep_ball = side - np.where(at_rim[..., None, None], u[..., :, None] * u[..., None, :], 0.0)
     return np.where(is_box[..., None, None], keep_box, keep_ball)

@@ -10,7 +10,7 @@ from warnings import warn
 import numpy as np
 
 from ...balance import check
-from ...model.errors import EquipoiseError, EquipoiseWarning, Fault, InfeasibleError, InputError
+from ...model.errors import EquipoiseError, EquipoiseWarning, Fault, InfeasibleError, InputError, nearest
 from ...model.masses import lumped_masses
 from ...model.mechanism import Mechanism
 from ...model.progress import silent
@@ -34,6 +34,8 @@ from .least_squares_form import LeastSquaresForm, build
 from .lightest import CLOSE, Lightest, lightest, weighs
 from .peak import Peak
 from .polish import Parts
+from .preferred import preferred
+from .wishes import PREFERENCES, Preference
 
 ROUNDING = 1e-13
 SPRINGS_TRIED = 8  # springs tried when no number is given
@@ -50,6 +52,9 @@ class SolverOptions(MethodOptions):
         front: also list the best design for every number of springs up to `springs` (8 by default).
         residual: the lightest counterweights that leave this share of the unbalanced rms torque, 0 for exact balance;
             by default weights may have any mass and springs and weights leave as little as they can.
+        prefer: what counts first among designs that are equal to 0.01 % of the unbalanced torque: the largest "force",
+            the stored "energy", the "length" of the springs, or their "rate". By default ends on the side of the mass
+            centre, in the plane of parallel axes, then force and length.
         seed: of the random starts.
     """
 
@@ -58,6 +63,9 @@ class SolverOptions(MethodOptions):
     )
     exact: bool = False
     front: bool = False
+    prefer: Preference | None = option(
+        None, "text", "what is least among equally good designs (default: as one would draw it)", PREFERENCES
+    )
     residual: Amount | None = option(
         None, "share", "with counterweights, what may be left of the unbalanced rms torque (default 0%)"
     )
@@ -93,6 +101,8 @@ def solve(problem: Problem, options: SolverOptions) -> Design:
     if options.springs is not None:
         whole_number("springs", options.springs, 1 if options.residual is None else 0)
     whole_number("seed", options.seed, 0)
+    if options.prefer not in (None, *PREFERENCES):
+        raise InputError(Fault(("prefer",), f"unknown value {nearest(options.prefer, PREFERENCES)}", PREFERENCES))
     if options.residual is None:
         return _springs(problem, options)
     if not weighs(problem):
@@ -160,6 +170,8 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
     found = _found(search, options.springs is None)
+    if weights is None:
+        found = preferred(goal, found, search.found, options.springs or found.count + 1, options.prefer)
     averaged = reduced.averaged and problem.objective == "rms"
     if bound is not None:
         bound = min(0.0 if possible else bound, found.value) * goal.unit
@@ -259,6 +271,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
         },
         **_weighed(problem, options),
         "springs": options.springs,
+        **({"prefer": options.prefer} if options.prefer else {}),
         "objective": problem.objective,
         "joints": None if problem.joints is None else list(problem.joints),
         **({"weights": dict(problem.weights)} if problem.weights else {}),

@@ -151,7 +151,7 @@ def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, referen
     """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
     J = jacobian(reduced, x)
     B, S, width = *x.k.shape, 1 + x.u.shape[2]
-    free = _free(reduced, x, np.einsum("bri,br->bi", J, r).reshape(B, S, width))
+    free = free_steps(reduced, x, np.einsum("bri,br->bi", J, r).reshape(B, S, width))
     J = (J.reshape(B, -1, S, width).transpose(0, 2, 1, 3) @ free).transpose(0, 2, 1, 3).reshape(B, -1, S * width)
     H, g = np.swapaxes(J, 1, 2) @ J, np.einsum("bri,br->bi", J, r)
     diagonal = np.einsum("bii->bi", H)  # a view: the damping goes onto H itself
@@ -172,7 +172,7 @@ def jacobian(reduced: LeastSquaresForm, x: Parts) -> Array:
     return J.transpose(0, 2, 1, 3).reshape(len(x), len(reduced.d), -1)
 
 
-def _free(reduced: LeastSquaresForm, x: Parts, gradient: Array) -> Array:
+def free_steps(reduced: LeastSquaresForm, x: Parts, gradient: Array) -> Array:
     """(B, S, 1 + shape, 1 + shape) projectors onto the directions a step may take."""
     free = np.zeros((*gradient.shape, gradient.shape[2]))
     free[..., 0, 0] = 1.0

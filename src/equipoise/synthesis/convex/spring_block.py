@@ -155,7 +155,7 @@ class SpringBlock(Block):
         return (list(range(self.one)), self.region_a), (list(range(self.one + 1, self.side)), self.region_b)
 
     @cached_property
-    def _others(self) -> list[int]:
+    def others(self) -> list[int]:
         """The entries of y that are a shape."""
         return [i for i in range(self.side) if i != self.one]
 
@@ -177,12 +177,12 @@ class SpringBlock(Block):
         return A
 
     def part(self, u: Array) -> Array:
-        upper, y = Upper.of(self.side), self._y(u)
+        upper, y = Upper.of(self.side), self.ends(u)
         return y[:, upper.row] * y[:, upper.column] * upper.weight
 
     def slopes(self, u: Array) -> Array:
-        slopes = Upper.of(self.side).slopes[:, self._others].reshape(self.side, -1)
-        return (self._y(u) @ slopes).reshape(len(u), self.shape, self.unknowns)
+        slopes = Upper.of(self.side).slopes[:, self.others].reshape(self.side, -1)
+        return (self.ends(u) @ slopes).reshape(len(u), self.shape, self.unknowns)
 
     def form(self, columns: Array) -> Array:
         return smat(columns)
@@ -192,9 +192,9 @@ class SpringBlock(Block):
 
     def acts(self, form: Array, u: Array) -> tuple[Array, Array]:
         """As quadratic forms in y, which are cheaper than their columns."""
-        y = self._y(u)[..., None]
+        y = self.ends(u)[..., None]
         Qy = (form @ y[:, None])[..., 0]
-        return (Qy @ y)[..., 0], 2 * Qy[..., self._others]
+        return (Qy @ y)[..., 0], 2 * Qy[..., self.others]
 
     def weights(self, x: Array, eps: float) -> Array:
         """Of the logarithm of the determinant, which counts the springs: a matrix of few has few eigenvalues."""
@@ -203,7 +203,7 @@ class SpringBlock(Block):
     def split(self, x: Array, least: float) -> tuple[Array, Array]:
         y = factor(smat(x), self._limits, least).T
         y = y[y[:, self.one] ** 2 >= least * SMALL]
-        return y[:, self.one] ** 2, (y / y[:, [self.one]])[:, self._others]
+        return y[:, self.one] ** 2, (y / y[:, [self.one]])[:, self.others]
 
     def project(self, u: Array) -> Array:
         return np.concatenate([project(u[:, own], is_box) for own, is_box in self._of_shape], axis=1)
@@ -224,7 +224,7 @@ class SpringBlock(Block):
     def attachments(self, u: Array) -> tuple[Vec3, Vec3]:
         """[m] The ends of a part of shape u (shape,) in their bodies' frames, not outside their regions by rounding."""
         ends = np.zeros(WHOLE)
-        ends[list(self.kept)] = self._y(u[None])[0]
+        ends[list(self.kept)] = self.ends(u[None])[0]
         return vec3(self.region_a.inside(ends[:3])), vec3(self.region_b.inside(ends[4:]))
 
     def add(self, mechanism: Mechanism, k: float, u: Array) -> Mechanism:
@@ -240,7 +240,8 @@ class SpringBlock(Block):
         larger = replace(self, region_a=self.region_a.times(factor), region_b=self.region_b.times(factor))
         return larger, scale[upper.row] * scale[upper.column]
 
-    def _y(self, u: Array) -> Array:
+    def ends(self, u: Array) -> Array:
+        """(N, side) y = [u_a; 1; u_b] of parts with shapes u (N, shape)."""
         return np.concatenate([u[:, : self.one], np.ones((len(u), 1)), u[:, self.one :]], axis=1)
 
 
