@@ -56,15 +56,20 @@ def main() -> None:
     args = parser.parse_args()
     warnings.simplefilter("ignore", EquipoiseWarning)
     eq.design(ROBOTS.parent / "mechanisms" / "pendulum.yaml")  # what is imported once is not counted
-    print("| robot | joints | torque | bound | reached | springs | time [s] |\n|---|---|---|---|---|---|---|")
+    heads = ("robot", "joints", "unbalanced rms", "bound", "reached", "springs", "stiffest [N/m]", "processor time [s]")
+    print("|", " | ".join(heads), "|\n" + "|---" * len(heads) + "|")
     for title, mechanism in [*robots(), *((path.stem, eq.load(path)) for path in args.files)]:
         start = time.process_time()
         design = eq.design(mechanism, span=args.span)
         seconds = time.process_time() - start
         bound = "-" if design.bound is None else f"{100 * design.bound / design.unbalanced:.4g} %"
         reached = f"{100 * design.residual / design.unbalanced:.4g} %"
-        cells = (title, len(mechanism.coordinates), f"{design.unbalanced:.4g} N m", bound, reached)
-        print("|", " | ".join(map(str, (*cells, len(design.mechanism.springs), f"{seconds:.2f}"))), "|", flush=True)
+        stiffest = max((spring.strength[0] for spring in design.mechanism.springs), default=0.0)
+        cells = (
+            title, len(mechanism.coordinates), f"{design.unbalanced:.4g} N m", bound, reached,
+            len(design.mechanism.springs), f"{stiffest:.4g}", f"{seconds:.2f}",
+        )  # fmt: skip
+        print("|", " | ".join(map(str, cells)), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..model.mechanism import Mechanism
 from ..model.region import Region, Shape
 from ..model.units import Amount
 
-__all__ = ["Given", "Region", "free_directions", "given_regions", "nearest_region", "project"]
+__all__ = ["Given", "Region", "free_directions", "given_regions", "nearest_region", "plain_regions", "project"]
 
 RIM = 1 - 1e-12  # in a region's own coordinates: on its boundary
 Given = Region | Amount | Iterable[Region]
@@ -42,6 +42,11 @@ def given_regions(
         }
     except InputError as error:
         raise InputError(replace(fault, path=("regions",)) for fault in error.faults) from None
+
+
+def plain_regions(regions: Sequence[Region]) -> object:
+    """As plain data: one region by itself, several as a list."""
+    return regions[0].to_dict() if len(regions) == 1 else [region.to_dict() for region in regions]
 
 
 def nearest_region(regions: Iterable[Region], p: Iterable[float]) -> Region:

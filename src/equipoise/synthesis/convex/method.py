@@ -22,6 +22,7 @@ from ..method import Method
 from ..mounts import Mounts
 from ..options import MethodOptions, option, takes
 from ..problem import Problem, ProblemOptions
+from ..region import plain_regions
 from .block_sets import FEASIBLE
 from .brought import brought
 from .cam_block import CamBlock
@@ -53,8 +54,7 @@ class SolverOptions(MethodOptions):
         residual: the lightest counterweights that leave this share of the unbalanced rms torque, 0 for exact balance;
             by default weights may have any mass and springs and weights leave as little as they can.
         prefer: what counts first among designs that are equal to 0.01 % of the unbalanced torque: the largest "force",
-            the stored "energy", the "length" of the springs, or their "rate". By default ends on the side of the mass
-            centre, in the plane of parallel axes, then force and length.
+            the stored "energy", the largest "length" or "rate"; by default what `Wishes` lists.
         seed: of the random starts.
     """
 
@@ -63,9 +63,7 @@ class SolverOptions(MethodOptions):
     )
     exact: bool = False
     front: bool = False
-    prefer: Preference | None = option(
-        None, "text", "what is least among equally good designs (default: as one would draw it)", PREFERENCES
-    )
+    prefer: Preference | None = option(None, "text", "what is least among equally good designs", PREFERENCES)
     residual: Amount | None = option(
         None, "share", "with counterweights, what may be left of the unbalanced rms torque (default 0%)"
     )
@@ -265,10 +263,7 @@ def _free(problem: Problem, options: SolverOptions) -> dict[str, Any]:
     return {
         **({"span": problem.span} if problem.span is not None else {}),
         "pairs": [list(pair) for pair in problem.pairs],
-        "regions": {
-            name: own[0].to_dict() if len(own) == 1 else [region.to_dict() for region in own]
-            for name, own in problem.attachments.items()
-        },
+        "regions": {name: plain_regions(own) for name, own in problem.attachments.items()},
         **_weighed(problem, options),
         "springs": options.springs,
         **({"prefer": options.prefer} if options.prefer else {}),
