@@ -58,9 +58,7 @@ class SolverOptions(MethodOptions):
         seed: of the random starts.
     """
 
-    springs: int | None = option(
-        None, "whole", "at most so many (default: as few as are exact, or within 1 % of the bound)"
-    )
+    springs: int | None = option(None, "whole", "at most so many (default: as few as are exact, or near the bound)")
     exact: bool = False
     front: bool = False
     prefer: Preference | None = option(None, "text", "what is least among equally good designs", PREFERENCES)
