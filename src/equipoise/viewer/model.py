@@ -50,6 +50,7 @@ class Model:
     Attributes:
         file: as it was loaded.
         springs, on: the springs as edited, and whether each is there.
+        masses: the file's point masses as edited.
         payload: [kg] at the tip, on top of the file's own masses.
         q: (n,) the pose; trail: the energies (gravity, springs, total) [J] of the last ones.
         view: where to look from.
@@ -62,6 +63,7 @@ class Model:
         self.file = mechanism
         self.springs = list(mechanism.springs)
         self.on = [True] * len(self.springs)
+        self.masses = list(mechanism.masses)
         self.payload = 0.0
         self.made: Mapping[str, Any] = mechanism.provenance
         self.tree = Tree.of(mechanism)
@@ -114,6 +116,12 @@ class Model:
     def load(self, payload: float) -> None:
         """Carry another payload [kg]."""
         self.payload = payload
+        self._changed()
+
+    def weigh(self, number: int, mass: float) -> None:
+        """Give one of the file's point masses, such as a counterweight, another mass [kg]."""
+        self.masses[number] = replace(self.masses[number], mass=mass)
+        self._edited = True
         self._changed()
 
     def residual(self) -> Residual:
@@ -204,7 +212,7 @@ class Model:
 
     def _changed(self) -> None:
         present = [spring for spring, on in zip(self.springs, self.on, strict=True) if on]
-        masses = self.file.masses
+        masses = tuple(self.masses)
         if self.payload > 0:
             body, place = self.tip
             masses = (*masses, PointMass(PAYLOAD, body, self.payload, place))

@@ -20,6 +20,7 @@ from .scene import Scene
 from .springs import SpringPanel
 
 STEP = 0.1  # of a coordinate's slider [deg or mm]
+HEAVIEST = 3.0  # the slider of a point mass goes to this many times what it is
 DRAWN = 15  # poses a second when a motion is played
 
 
@@ -42,6 +43,7 @@ class Panel:
             self.energies = self.gui.add_html(readout.energies(model))
         with self.gui.add_folder("Design"):
             self._design()
+        self.weights = [self._weight(k) for k in range(len(model.masses))]
         self.springs = SpringPanel(server, model, scene, self.lock, lambda: self.show(rebuild=True), self.say)
         self.quiet = False
 
@@ -106,6 +108,21 @@ class Panel:
         judge.on_click(lambda _: self.guarded("Judge", self._judge))
         keep = self.gui.add_button(f"Save to {self.output.name}")
         keep.on_click(lambda _: self.guarded("Save", self._save))
+
+    def _weight(self, number: int) -> Any:
+        """The slider of one of the file's point masses, up to a multiple of what it is."""
+        mass = self.model.masses[number]
+        most = float(f"{HEAVIEST * mass.mass:.2g}") or 1.0
+        slider = self.gui.add_slider(f"{mass.name} [kg]", 0.0, most, most / 300, min(mass.mass, most))
+        slider.on_update(lambda _: self._weigh(number))
+        return slider
+
+    def _weigh(self, number: int) -> None:
+        with self.lock:
+            slider = self.weights[number]
+            if abs(slider.value - self.model.masses[number].mass) > 0.51 * slider.step:
+                self.model.weigh(number, slider.value)
+                self.show(rebuild=True)
 
     def _set_sliders(self) -> None:
         self.quiet = True
