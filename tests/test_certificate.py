@@ -61,6 +61,18 @@ def test_the_bound_is_that_of_the_design():
     assert least == pytest.approx(provenance["bound"], rel=1e-4)
 
 
+def test_the_bound_covers_a_union_of_regions():
+    arm, one = bounded(), eq.Region.box((0.1, 0.05, 0.0), (0.05, 0, 0))
+    regions = {"fore": [one, eq.Region.ball(0.05, (0.1, 0, 0))]}
+    pairs = [("world", "upper"), ("upper", "fore")]
+    found = eq.design(arm, pairs=pairs, radius=0.1, regions=regions, springs=2).mechanism
+    assert [one["shape"] for one in found.provenance["options"]["regions"]["fore"]] == ["box", "ball"]
+    bound = eq.certify(found).claims["bound"]
+    assert [pair["region_b"]["shape"] for pair in bound["pairs"]] == ["ball", "box", "ball"]
+    assert float(bound["at_least"]) == pytest.approx(found.provenance["bound"], rel=1e-3)
+    assert eq.verify(eq.certify(found))
+
+
 def test_stiffer_springs_are_bounded_by_less():
     some = [float(eq.certify(bounded(), stiffness=k).claims["bound"]["at_least"]) for k in ("100 kN/m", "1e9 N/m")]
     assert some[0] > some[1] > 0.9 * some[0]

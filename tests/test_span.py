@@ -18,8 +18,10 @@ from zoo import PENDULUM_K, hinge, pendulum
 from equipoise.energy import FourierEnergy, NoFourierForm, Potential, SpanEnergy
 from equipoise.energy.certificate import proof_of
 from equipoise.energy.exactness import EXACT
+from equipoise.energy.span.nodes import reach
+from equipoise.kinematics import Tree
 from equipoise.model.elements import Spring
-from equipoise.model.mechanism import Body, Coupling, Mechanism, PointMass
+from equipoise.model.mechanism import Body, Coupling, Joint, Mechanism, PointMass
 
 GRID = 6  # poses a turn: exact means of what has frequencies below that
 
@@ -149,6 +151,12 @@ def test_stiff_springs_that_cancel_hide_nothing(k: float) -> None:
     assert not SpanEnergy(m.with_springs((*m.springs, *off))).exact
     if k == 1e3:  # beyond, rounding may leave too much to call it exact
         assert SpanEnergy(m.with_springs((*m.springs, *ends))).exact
+
+
+@pytest.mark.parametrize(("ends", "far"), [((-0.3, 0.5), 0.5), ((-0.7, 0.5), 0.7), ((0.0, 0.0), 1.0)])
+def test_what_slides_counts_with_the_size_of_its_range(ends: tuple[float, float], far: float) -> None:
+    rail = Joint("rail", "prismatic", "world", "cart", axis=(0, 0, 1), range=ends)
+    assert reach(Tree.of(Mechanism("cart", (Body("cart", 1.0),), (rail,)))).tolist() == [far]
 
 
 def test_what_has_no_proof() -> None:
