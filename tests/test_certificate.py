@@ -92,6 +92,12 @@ def test_what_has_no_finite_form_has_no_certificate():
         eq.certify(free)
 
 
+def test_a_problem_that_is_not_covered_is_left_out():
+    pairs = [("world", "upper")]
+    kept = eq.Problem.of(bounded(), pairs=pairs, keep=True)
+    assert "springs that stay" in eq.certify(bounded(), problem=kept).left_out["bound"]
+
+
 def test_what_is_left_out_is_said():
     assert "designed" in eq.certify(FOLDER / "pendulum.yaml").left_out["bound"]
 
@@ -134,6 +140,8 @@ def test_the_answer_no(run, tmp_path):
     code, _, err = run("certify", FOLDER / "telescope.yaml", "-o", cert)
     assert (code, err.startswith("no certificate: ")) == (1, True)
     assert not cert.exists()
+    code, _, err = run("certify", FOLDER / "pendulum.yaml", "-o", cert, "--stiffness", "0")
+    assert (code, "must be more than 0 N/m" in err) == (2, True)
     cert.write_text("{")
     assert run("verify", cert)[0] == 1
     assert run("verify", tmp_path / "none.json")[0] == 2

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,13 @@ from ..io.files import read_text, write_text
 from ..kinematics import Tree
 from ..kinematics.sampling import whole_turns
 from ..model.arrays import vec3
-from ..model.errors import EquipoiseError, NoFourierForm
+from ..model.errors import EquipoiseError, Fault, InputError, NoFourierForm
 from ..model.mechanism import Mechanism
 from ..model.notebook import Shown
 from ..model.units import Amount, quantity
 from ..synthesis.convex.spring_block import SpringBlock
 from ..synthesis.fewest import Fewest, fewest
+from ..synthesis.load import OWN
 from ..synthesis.problem import Problem
 from ..synthesis.region import Region
 from . import verify as alone
@@ -79,13 +81,16 @@ def certify(mechanism: Source, *, stiffness: Amount = STIFFNESS, problem: Proble
 
     Args:
         stiffness: [N/m] of all springs together, up to which the bound holds.
-        problem: what the bound is about; by default what the mechanism's provenance says that it was designed for.
+        problem: what the bound is about, with this mechanism; by default what its provenance says that it was designed
+            for.
 
     Raises:
         NoFourierForm: its energy has no finite form.
-        InputError: python-flint is not installed.
+        InputError: python-flint is not installed, or a stiffness that is not positive.
     """
-    mechanism = loaded(mechanism)
+    mechanism, limit = loaded(mechanism), quantity(stiffness, "stiffness", "stiffness")
+    if not 0 < limit < inf:
+        raise InputError(Fault(("stiffness",), f"must be more than 0 N/m and finite, found {limit:g}"))
     if mechanism.loops:
         return _of_loops(mechanism)
     data = written(mechanism)
@@ -94,7 +99,6 @@ def certify(mechanism: Source, *, stiffness: Amount = STIFFNESS, problem: Proble
     proof: dict[str, Any] = {}
     left_out: dict[str, str] = {}
     try:
-        limit = quantity(stiffness, "stiffness", "stiffness")
         claims["bound"], proof["bound"] = _bound(problem or _designed_for(mechanism), enclosure, limit)
     except EquipoiseError as why:
         left_out["bound"] = str(why)
@@ -168,6 +172,8 @@ def _bound(problem: Problem, enclosure: Enclosure, stiffness: float) -> tuple[di
     tree = Tree.of(problem.judged)
     if not whole_turns(tree, denominators(tree)):
         raise NoFourierForm("its joints do not turn through whole turns: the mean over their ranges is not enclosed")
+    if problem.keep or problem.loads != (OWN,):
+        raise NoFourierForm("springs that stay, and loads beside the mechanism's own, are not covered")
     scale = problem.scale
     blocks = [block for block in problem.blocks if isinstance(block, SpringBlock)]
     found = lower_bound(enclosure, blocks, scale, stiffness)
