@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi
 
 
@@ -36,3 +37,9 @@ class Slide(Coordinate):
     dimension, unit = "length", "m"
     load, load_unit = "force", "N"
     shown_unit, scale = "mm", 1e3
+
+
+def load_unit(coordinates: Iterable[Coordinate]) -> str:
+    """Of what holds these coordinates together: newtons where all slide; else a slide's force counts times a length."""
+    kinds = {coordinate.turns for coordinate in coordinates}
+    return Slide.load_unit if kinds == {False} else Coordinate.load_unit

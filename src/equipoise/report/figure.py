@@ -18,6 +18,7 @@ from ..io import Source, loaded
 from ..io.files import check_writable, write_bytes
 from ..kinematics import Tree
 from ..model.arrays import Array
+from ..model.coordinate import load_unit
 from ..model.errors import Fault, InputError
 from ..model.mechanism import Mechanism
 from . import arm, loads, style
@@ -146,15 +147,16 @@ def _heading(figure: Any, mechanism: Mechanism, balance: Balance, title: str | N
 
 
 def _verdict(balance: Balance) -> tuple[str, str]:
+    unit = load_unit(balance.coordinates)
     poses, limit = f"{balance.certificate.samples} random poses", loads.below(balance)
     if not balance.coordinates:
         return "nothing moves", ""
     if not balance.mechanism.springs:
         return "gravity alone", f"over {poses}"
     if balance.exact:
-        return "EXACT", f"proved for every pose; below {style.power(limit or 0.0)} N m over {poses}"
+        return "EXACT", f"proved for every pose; below {style.power(limit or 0.0)} {unit} over {poses}"
     if limit is not None:
-        return f"residual below {style.power(limit)} N m", f"over {poses}"
+        return f"residual below {style.power(limit)} {unit}", f"over {poses}"
     if not np.isfinite(balance.relative):
         return "residual torque where gravity had none", f"over {poses}"
     return f"residual {style.number(100 * balance.relative)} % of unbalanced", f"largest torque over {poses}"

@@ -126,12 +126,14 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
 
     method = METHODS[design.method]
     which = "all joints" if design.joints is None else ", ".join(design.joints)
-    terms = Terms.of(design.goal.count)
+    coordinates = design.balance.coordinates
+    counted = [name for name in coordinates if design.joints is None or name in design.joints]
+    terms = Terms.of(design.goal.count, counted)
     floor = EXACT * design.unbalanced
     gap = design.certified_gap
 
     def left(value: float) -> str:
-        return f"{torque(value, floor)} N m" if terms.unit == "N m" else terms.show(value)
+        return terms.show(value) if terms.unit == "share" else f"{torque(value, floor)} {terms.unit}"
 
     count = _count(design.mechanism.springs, "spring")
     leave = "leaves" if len(design.mechanism.springs) == 1 else "leave"
@@ -146,7 +148,8 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     ends = " and at ends of the joint ranges" if design.objective == "peak" else ""
     where = "all configurations" if design.averaged else f"{design.samples:,} random poses{ends}"
     where = design.goal.poses.where(design.samples or 0) if design.goal.poses.chosen else where
-    yield Text(f"  counted     {design.objective} torque of {which} over {where}; method {design.method}")
+    what = "force" if terms.unit == "N" else "torque"
+    yield Text(f"  counted     {design.objective} {what} of {which} over {where}; method {design.method}")
     if design.bound is not None and gap is not None:
         least = f"{left(design.bound)}  = {percent(design.bound / design.unbalanced)}"
         why = "the balance is exact" if method.exact else "no springs on these pairs and regions leave less"
@@ -156,9 +159,9 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
         from .weights import weight_lines
 
         yield from weight_lines(design.counterweights, design.unbalanced)
-    for name, left in design.brought.items():
-        share = percent(left / design.unbalanced)
-        yield Text(f"  {name}: without it at least {torque(left, floor)} N m = {share} would be left")
+    for name, least in design.brought.items():
+        share = percent(least / design.unbalanced)
+        yield Text(f"  {name}: without it at least {left(least)} = {share} would be left")
     if design.by_chance:
         yield Text("  springs from random starts: the program gave none as good; another --seed may find better ones")
     if design.fewest is not None:
@@ -175,7 +178,7 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     if design.goal:
         yield Text(f"  goal        {terms.sentence(design.residual, design.unbalanced, design.bound)}", style="bold")
     if design.front:
-        yield front_table(design)
+        yield front_table(design, terms.unit)
     yield from balance_lines(design.balance)
 
 
@@ -206,11 +209,11 @@ def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
         )
 
 
-def front_table(design: Design) -> Table:
+def front_table(design: Design, unit: str = "N m") -> Table:
     """Residual against number of springs."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("springs", justify="right")
-    for title in ("residual [N m]", "of unbalanced", "bound [N m]"):
+    for title in (f"residual [{unit}]", "of unbalanced", f"bound [{unit}]"):
         table.add_column(title, justify="right", no_wrap=True)
     for title in ("which is", "on pairs"):
         table.add_column(title)

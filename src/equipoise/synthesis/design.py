@@ -55,6 +55,7 @@ class Infeasible:
             or the regions are to blame.
         remedies: of the nearest other pairs, those any one of which would make exact balance possible.
         tried: how many other pairs that was.
+        unit: N where all coordinates that count slide.
     """
 
     pairs: tuple[tuple[str, ...], ...]
@@ -62,13 +63,14 @@ class Infeasible:
     far: float
     remedies: tuple[tuple[str, ...], ...]
     tried: int
+    unit: str = "N m"
 
     def __str__(self) -> str:
         pairs = ", ".join(":".join(pair) for pair in self.pairs)
         text = f"exact balance is infeasible with springs on {pairs}: "
-        text += f"every choice leaves at least {self.least:.4g} N m rms"
+        text += f"every choice leaves at least {self.least:.4g} {self.unit} rms"
         if self.far > 0:
-            text += f" ({self.far:.4g} N m rms even with attachments ten times as far out)"
+            text += f" ({self.far:.4g} {self.unit} rms even with attachments ten times as far out)"
         if self.remedies:
             text += "; adding any one of these pairs makes it feasible: "
             text += ", ".join(":".join(pair) for pair in self.remedies)

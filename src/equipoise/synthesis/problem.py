@@ -276,4 +276,5 @@ class Problem:
         counts = [self.joints is None or name in self.joints for name in tree.coordinates]
         weights = np.where(counts, [self.weights.get(name, 1.0) for name in tree.coordinates], 0.0)
         every = motor_scale(self.goal.count, tree, weights > 0)
-        return weights * (np.where(tree.turns, 1.0, Mounts.of(self.judged).reach) if every is None else every)
+        reach = Mounts.of(self.judged).reach if tree.turns[weights > 0].any() else 1.0  # slides alone: their forces
+        return weights * (np.where(tree.turns, 1.0, reach) if every is None else every)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ..io import Source, loaded
+from ..kinematics import Tree
+from ..model.coordinate import Coordinate, load_unit
 from ..model.goal import Count, Goal
 from ..model.mechanism import Mechanism
 from .convex.least_squares_form import build
@@ -24,17 +26,19 @@ class Terms:
     unit: str
 
     @staticmethod
-    def of(count: Count) -> Terms:
-        """Of what a goal counts."""
+    def of(count: Count, coordinates: Iterable[Coordinate]) -> Terms:
+        """Of what a goal counts of these coordinates, or of its own among them."""
         weighted = ", weighted" if any(factor != 1 for factor in count.joints.values()) else ""
         if count.share_of:
             name = "largest share of any motor" if count.torque == "peak" else "root mean square share of all motors"
             return Terms(name + weighted, "share")
-        return Terms(("largest torque" if count.torque == "peak" else "root mean square torque") + weighted, "N m")
+        unit = load_unit(coordinates)
+        what = "force" if unit == "N" else "torque"
+        return Terms(f"{'largest' if count.torque == 'peak' else 'root mean square'} {what}{weighted}", unit)
 
     def show(self, value: float) -> str:
         """A value with its unit."""
-        return f"{100 * value:.3g} %" if self.unit == "share" else f"{value:.5g} N m"
+        return f"{100 * value:.3g} %" if self.unit == "share" else f"{value:.5g} {self.unit}"
 
     def sentence(self, value: float, before: float, bound: float | None) -> str:
         """The goal's number, what it is without the springs, and what no springs can undercut."""
@@ -87,8 +91,9 @@ def score(mechanism: Source) -> Score | None:
     made = mechanism.provenance
     same = isinstance(made.get("goal"), Mapping) and made["goal"] == mechanism.goal.to_dict()
     bound = made.get("bound") if same else None
+    terms = Terms.of(mechanism.goal.count, Tree.of(mechanism).coordinates)
     found = [_left(one) for one in (mechanism, mechanism.with_springs(()))]
-    return Score(mechanism.goal, Terms.of(mechanism.goal.count), *found, bound if isinstance(bound, float) else None)
+    return Score(mechanism.goal, terms, *found, bound if isinstance(bound, float) else None)
 
 
 def _left(mechanism: Mechanism) -> float:

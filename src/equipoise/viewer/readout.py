@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+from ..model.coordinate import load_unit
 from ..report import style, svg
 from ..report.verdict import verdict
 from .model import Model
@@ -21,10 +22,11 @@ def status(model: Model) -> str:
     nothing = residual.share < 1e-9
     tone = style.AFTER if nothing else style.SPRINGS[0] if residual.share > 0.5 else "#8a5a00"
     share = "0 %" if nothing else f"{100 * residual.share:.3g} %"
+    unit = load_unit(model.tree.coordinates)
     lines = [
         f'<div style="font-size:22px;font-weight:700;color:{tone}" data-residual="{residual.rms:.9g}"'
         f' data-unbalanced="{residual.unbalanced:.9g}">{share} of the torque is left</div>',
-        f"<div>residual {_number(residual.rms)} of {_number(residual.unbalanced)} N m rms, {_count(model)}</div>",
+        f"<div>residual {_number(residual.rms)} of {_number(residual.unbalanced)} {unit} rms, {_count(model)}</div>",
     ]
     if balance is not None:
         lines.append(f'<div data-verdict="{"exact" if balance.exact else "not exact"}">{escape(str(verdict(balance)))}')

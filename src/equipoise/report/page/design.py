@@ -13,7 +13,7 @@ from ...balance import Balance
 from ...energy.exactness import EXACT
 from ...energy.spring_use import SpringUse
 from ...io.yaml import to_text
-from ...model.coordinate import Coordinate
+from ...model.coordinate import Coordinate, load_unit
 from ...model.masses import lumped_masses
 from ...synthesis.fewest import fewest
 from ..numbers import percent, torque
@@ -182,13 +182,13 @@ def _bound(balance: Balance) -> Iterator[Block]:
         else:
             yield Paragraph(f"{unknown}, so it is not known how near the best possible it is.")
         return
-    floor = EXACT * unbalanced
+    floor, unit = EXACT * unbalanced, load_unit(balance.coordinates)
     rows: list[tuple[str, Cell]] = [
-        ("without springs [N m]", Number(unbalanced, torque(unbalanced, floor))),
-        ("with springs [N m]", Number(left, torque(left, floor))),
+        (f"without springs [{unit}]", Number(unbalanced, torque(unbalanced, floor))),
+        (f"with springs [{unit}]", Number(left, torque(left, floor))),
     ]
     if isinstance(bound, (int, float)) and isinstance(gap, (int, float)):
-        rows.append(("bound: no springs allowed leave less [N m]", Number(bound, torque(bound, floor))))
+        rows.append((f"bound: no springs allowed leave less [{unit}]", Number(bound, torque(bound, floor))))
         rows.append(("gap, share of the torque without springs", Number(gap, percent(gap))))
     else:
         rows.append(("bound", "this method gives none"))

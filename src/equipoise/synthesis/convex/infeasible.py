@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...kinematics import Tree
+from ...model.coordinate import load_unit
 from ...model.errors import EquipoiseError
 from ..design import Infeasible
 from ..mounts import Mounts
@@ -44,7 +45,8 @@ def infeasible_on(reduced: LeastSquaresForm, bound: float) -> Infeasible:
         far = 0.0  # not known
     remedies = _remedies(wide, [i for place in own for i in numbers[place]], [numbers[pair] for pair in missing])
     places = tuple(wide.blocks[i].place for i, *_ in remedies)
-    return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing))
+    kind = load_unit(c for c, scale in zip(Tree.of(problem.judged).coordinates, problem.scale, strict=True) if scale)
+    return Infeasible(own, bound * unit, far * unit if far >= FEASIBLE else 0.0, places, len(missing), kind)
 
 
 def _feasible(reduced: LeastSquaresForm) -> bool:
