@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from campaign import campaign
 from robots import planar_arm
 
 import equipoise as eq
 from equipoise.model.arrays import Array
 from equipoise.synthesis.convex.blocks import Block
 from equipoise.synthesis.convex.bound_products import of_three, of_two, with_balls
+from equipoise.synthesis.convex.few_springs import SpringSearch
+from equipoise.synthesis.convex.goal import Rms
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.semidefinite import least_rms
 from equipoise.synthesis.convex.spring_block import SpringBlock
@@ -81,3 +84,28 @@ def test_products_are_violated_by_what_no_springs_are():
     assert all(np.sum(A * N) >= 0 for A in of_two([0, 2], 1, 3))
     N[0, 1] = N[1, 0] = 0.5  # u_a leans to one side, and u_b does not follow
     assert min(np.sum(A * N) for A in of_two([0, 2], 1, 3)) < -0.4
+
+
+def two_links(seed: int) -> Problem:
+    """A planar arm of two links whose pair has an end on a line each, the lines along an axis of the body."""
+    rng = np.random.default_rng(seed)
+    lengths, masses = rng.uniform(0.2, 0.6, 2).tolist(), rng.uniform(0.5, 4, 2).tolist()
+    arm = planar_arm(masses, lengths, [0.5 * lengths[0], float(rng.uniform(0.2, 0.9)) * lengths[1]])
+    regions = {}
+    for body in ("world", "link3"):
+        half, place = np.zeros(3), rng.uniform(-0.2, 0.2, 3)
+        half[2 * rng.integers(2)], place[1] = rng.uniform(0.05, 0.3), 0.0
+        regions[body] = eq.Region.box(half.tolist(), place.tolist())
+    return Problem.of(arm, pairs=[("world", "link3")], regions=regions)
+
+
+@campaign(100)
+def test_on_lines_bound_and_design_agree(seeds):
+    """Two coordinates: the products give the exact hull (Anstreicher and Burer 2010)."""
+    for seed in seeds:
+        reduced = build(two_links(seed))
+        search = SpringSearch(Rms(reduced), most=8)
+        found = search.best(8)
+        if found is None or search.floor > 1 - 1e-9:
+            continue  # no spring helps
+        assert search.floor - 1e-8 <= found.value <= search.floor * 1.001 + 1e-9, seed
