@@ -67,7 +67,7 @@ def test_a_spring_and_a_pulley_on_a_sum_of_joints_balance_an_arm_and_the_pulley_
     assert both.balance.exact
     assert both.free_parameters["cams"] == [f"cam on {FIRST} + {SECOND}"]
     cam = both.mechanism.springs[-1]
-    made = eq.design(both.mechanism, "cam", of=cam.name)
+    made = eq.design(both.mechanism, "cam", profile_of=cam.name)
     assert made.balance.exact
     assert made.mechanism.springs[0] == both.mechanism.springs[0]
     angles = np.radians(np.linspace(-60, 50, 31))
@@ -93,4 +93,4 @@ def test_a_joint_that_is_not_there_is_named() -> None:
     with pytest.raises(InputError, match="is there twice"):
         eq.Problem.of(ARM, cams=[FIRST, FIRST])
     with pytest.raises(InputError, match="there is no cam"):
-        eq.design(ARM, "cam", of="elbow")
+        eq.design(ARM, "cam", profile_of="elbow")

@@ -210,7 +210,7 @@ def design(
         check_drawable(plot)
     if report:
         check_report(report)
-    if mechanism.springs and not keep and "of" not in given:
+    if mechanism.springs and not keep and "profile_of" not in given:
         terminal.say(f"note: springs that the file has are replaced ({len(mechanism.springs)}); --keep keeps them")
     if real:
         asked_of = buildable.choice(

@@ -49,8 +49,8 @@ def design(mechanism: Mechanism, options: CamOptions) -> Design:
         choices = CamOptions.parameters()[name].choices
         if getattr(options, name) not in choices:
             raise InputError(Fault((name,), f"unknown value '{getattr(options, name)}'", choices))
-    if options.of is not None:
-        return _of_a_cam(mechanism, options.of, options)
+    if options.profile_of is not None:
+        return _of_a_cam(mechanism, options.profile_of, options)
     joints, ends = terms(mechanism, options.joint), between(options)
     load = limited(mechanism if options.keep else mechanism.with_springs(()), joints, ends)
     whole = wanted(load, joints, ends)
@@ -67,7 +67,7 @@ def _of_a_cam(mechanism: Mechanism, name: str, options: CamOptions) -> Design:
     """A cam of the mechanism with its profile."""
     known = {spring.name: spring for spring in mechanism.springs if isinstance(spring.law, Cam)}
     if name not in known:
-        raise InputError(Fault(("of",), f"there is no cam {nearest(name, known)}", tuple(known)))
+        raise InputError(Fault(("profile_of",), f"there is no cam {nearest(name, known)}", tuple(known)))
     cam = known[name]
     part = of_law(mechanism, cam.joints, cam.law, between(options))
     (found,) = _each([part], mechanism, options)

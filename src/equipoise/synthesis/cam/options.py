@@ -32,7 +32,7 @@ class CamOptions(MethodOptions):
 
     Attributes:
         joint: the joint, or a sum such as "shoulder+elbow" or "hip-2*knee"; the only one where there is only one.
-        of: the name of a cam of the file: it gets its profile, and nothing else changes.
+        profile_of: the name of a cam of the file: it gets its profile, and nothing else changes.
         keep: the file's own springs stay and count as a load; else they are replaced.
         follower: a cable on a pulley, or a roller on a cam.
         sides: "two" are two pulleys with a spring each that pull against each other.
@@ -53,7 +53,7 @@ class CamOptions(MethodOptions):
     """
 
     joint: str | Mapping[str, float] | None = option(None, "text", "the joint, or a sum such as shoulder+elbow")
-    of: str | None = option(None, "text", "a cam of the file that gets its profile; all else stays")
+    profile_of: str | None = option(None, "text", "a cam of the file that gets its profile; all else stays")
     keep: bool = False
     follower: str = option("cable", "text", "what runs on the profile (default cable)", FOLLOWERS)
     sides: str = option("one", "text", "two: a second pulley and spring pull against the first", SIDES)

@@ -25,5 +25,5 @@ def beside(
         InputError: no such body, joint or spring, or one of which nothing can be chosen.
     """
     weights = () if counterweights is None else CounterweightBlock.each(mechanism, counterweights)
-    cams = CamBlock.each(mechanism, cams or ())
-    return (*weights, *cams, *SetBlock.torsion(mechanism, torsion or ()), *SetBlock.of_file(mechanism, tune or ()))
+    on_joints = CamBlock.each(mechanism, cams or ())
+    return (*weights, *on_joints, *SetBlock.torsion(mechanism, torsion or ()), *SetBlock.of_file(mechanism, tune or ()))
