@@ -12,6 +12,7 @@ from robots import planar_arm
 import equipoise as eq
 from equipoise.model.errors import InputError
 from equipoise.model.region import Attachment
+from equipoise.synthesis.convex.polish import Parts
 from equipoise.synthesis.convex.spring_block import SpringBlock
 from equipoise.synthesis.region import given_regions, nearest_region, project
 
@@ -100,3 +101,12 @@ def test_the_nearest_of_several_regions():
     regions = [eq.Region.ball(0.1), eq.Region.box((0.5, 0, 0), (1, 0, 0))]
     assert nearest_region(regions, (0.05, 0, 0)) is regions[0]
     assert nearest_region(regions, (0.6, 0, 0)) is regions[1]
+
+
+def test_sets_on_blocks_of_different_shapes_are_one_batch():
+    """A set on some of the blocks has fewer coordinates than one on others."""
+    flat, whole = (Parts(np.zeros((1, 2), int), np.ones((1, 2)), np.full((1, 2, n), 0.5)) for n in (5, 6))
+    both = Parts.joined([flat, whole])
+    assert both.u.shape == (2, 2, 6)
+    assert both.u[0].tolist() == [[0.5] * 5 + [0.0]] * 2
+    assert both.u[1].tolist() == [[0.5] * 6] * 2

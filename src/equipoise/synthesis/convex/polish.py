@@ -51,8 +51,11 @@ class Parts:
 
     @staticmethod
     def joined(batches: Sequence[Parts]) -> Parts:
-        """One batch of sets of the same number of parts."""
-        return Parts(*(np.concatenate([getattr(own, name) for own in batches]) for name in ("block", "k", "u")))
+        """One batch of sets of the same number of parts, their shapes as wide as the widest."""
+        width = max(own.u.shape[2] for own in batches)
+        u = [np.pad(own.u, ((0, 0), (0, 0), (0, width - own.u.shape[2]))) for own in batches]
+        block, k = (np.concatenate([getattr(own, name) for own in batches]) for name in ("block", "k"))
+        return Parts(block, k, np.concatenate(u))
 
     def without(self, i: int) -> Parts:
         """The same without the i-th part of every set."""
