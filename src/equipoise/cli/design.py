@@ -98,6 +98,7 @@ def design(
     share_of: goals.ShareOf = None,
     joint_weight: goals.Weights = None,
     motion: goals.Motion = None,
+    heat: goals.Heat = False,
     prefer: Annotated[
         str | None, typer.Option(help="force, energy, length or rate: least among equally good designs")
     ] = None,
@@ -200,7 +201,7 @@ def design(
     if room is None and thick is not None:
         raise InputError("--diameter: needs --clearance, the distance that is kept")
     mechanism = terminal.load(file)
-    goal = goals.asked(mechanism, payload, payload_on, payload_at, tilt, share_of, joint_weight or [], motion)
+    goal = goals.asked(mechanism, payload, payload_on, payload_at, tilt, share_of, joint_weight or [], motion, heat)
     if goal is not None:
         given["goal"] = goal
     sizes(mechanism, given.get("radius"), given.get("regions", {}))

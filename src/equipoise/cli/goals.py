@@ -34,6 +34,7 @@ Motion = Annotated[
         "'elbow [deg]'",
     ),
 ]
+Heat = Annotated[bool, typer.Option("--heat", help="the heat in the motors, by torque_constant and resistance")]
 Weights = Annotated[
     list[str] | None,
     typer.Option("--joint-weight", metavar="JOINT=FACTOR", help="a joint's torque counts so much; may be repeated"),
@@ -49,6 +50,7 @@ def asked(
     share_of: str | None,
     weights: Sequence[str],
     motion: str | None,
+    heat: bool,
 ) -> Goal | None:
     """The file's goal with what the options say instead; None where they say nothing.
 
@@ -68,7 +70,11 @@ def asked(
     if share_of is not None:
         if share_of not in SHARES:
             raise InputError(Fault(("--share-of",), f"unknown share '{share_of}'", SHARES))
-        count = replace(count, share_of=share_of)
+        count = replace(count, share_of=share_of, heat=False)
+    if heat:
+        if share_of is not None:
+            raise InputError(Fault(("--heat",), "is instead of --share-of: give one of them"))
+        count = replace(count, share_of=None, heat=True)
     if weights:
         count = replace(count, joints={**count.joints, **dict(map(_weight, weights))})
     poses = goal.poses

@@ -68,6 +68,8 @@ class CountItem(Item):
     joints: dict[str, Factor] = Field(default_factory=dict)
     only: Annotated[list[Text], BeforeValidator(_texts)] | None = None
     share_of: Annotated[Any, one_of("share", SHARES)] = None
+    heat: bool = False
+    friction: bool = False
 
 
 class MotionItem(Item):
@@ -179,7 +181,7 @@ class GoalItem(Item):
         gravity = (Gravity(**item.values()) for item in self.gravity)
         loads = Loads(tuple(tools), tuple(gravity), self.tilt)
         where = _at(("poses",), self.poses.where, folder, coordinates)
-        return Goal(loads, where, Count(**self.count.values()))
+        return Goal(loads, where, _at(("count",), Count, **self.count.values()))
 
 
 ITEMS: dict[str, type[Item]] = {"loads": ToolItem, "gravity": GravityItem, "count": CountItem}

@@ -114,14 +114,26 @@ class Count:
         joints: joint or coordinate -> a factor, 1 where none is given.
         only: the joints or coordinates that count, None for all.
         share_of: "effort": torque as a share of what the joint's motor can do.
+        heat: what the torque makes in the motor instead: (torque / torque constant)^2 resistance.
+        friction: only what the dry friction of a joint does not hold; of the largest torque.
+
+    Raises:
+        InputError: an unknown torque or share, a factor below 0, shares and heat at once, friction of a mean square.
     """
 
     torque: Torque = "rms"
     joints: Mapping[str, float] = field(default_factory=dict, hash=False)
     only: tuple[str, ...] | None = None
     share_of: Literal["effort"] | None = None
+    heat: bool = False
+    friction: bool = False
 
     def __post_init__(self) -> None:
+        if self.heat and self.share_of:
+            raise InputError(Fault(("heat",), "does not go with share_of: give one of them"))
+        if self.friction and self.torque != "peak":
+            problem = "does not go with torque rms: what friction does not hold is known of the peak"
+            raise InputError(Fault(("friction",), problem))
         for name, value, valid in (("torque", self.torque, TORQUES), ("share_of", self.share_of, (None, *SHARES))):
             if value not in valid:
                 choices = tuple(one for one in valid if one)
@@ -156,8 +168,10 @@ class Goal:
             "joints": dict(count.joints),
             "only": None if count.only is None else [*count.only],
             "share_of": count.share_of,
+            "heat": count.heat,
+            "friction": count.friction,
         }
-        defaults = {"torque": "rms", "joints": {}, "only": None, "share_of": None}
+        defaults = {"torque": "rms", "joints": {}, "only": None, "share_of": None, "heat": False, "friction": False}
         counted = {name: value for name, value in counted.items() if value != defaults[name]}
         poses = self.poses.to_dict()
         found = {"loads": tools, "gravity": gravity, "tilt": loads.tilt, "poses": poses, "count": counted}

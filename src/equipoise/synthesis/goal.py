@@ -52,21 +52,48 @@ def motor_scale(count: Count, tree: Tree, counted: Booleans) -> Array | None:
     Raises:
         InputError: of one of those that are `counted` (n,) it is not known.
     """
-    if count.share_of is None:
+    if count.share_of is None and not count.heat:
         return None
+    of, needs = (_root_heat, "torque_constant and resistance") if count.heat else (_share, "effort")
     joints = {coordinate: joint for joint in tree.mechanism.joints for coordinate in joint.coordinates}
     found, missing = np.zeros(tree.n), []
     for j, name in enumerate(tree.coordinates):
-        value = _effort(joints[name])
+        value = of(joints[name])
         if value is not None:
             found[j] = value
         elif counted[j]:
             missing.append(name)
     if missing:
         how = "give it in the file, or name the joints that count"
-        raise InputError(Fault(("share_of",), f"needs the effort of {', '.join(missing)}: {how}"))
+        what = "heat" if count.heat else "share_of"
+        raise InputError(Fault((what,), f"needs the {needs} of {', '.join(missing)}: {how}"))
     return found
 
 
-def _effort(joint: Joint) -> float | None:
+def _share(joint: Joint) -> float | None:
     return None if joint.effort is None else 1 / joint.effort
+
+
+def _root_heat(joint: Joint) -> float | None:
+    """The root of the heat [W^0.5] of 1 N m: its square adds up over joints and poses as torques do."""
+    if joint.torque_constant is None or joint.resistance is None:
+        return None
+    return float(np.sqrt(joint.resistance)) / joint.torque_constant
+
+
+def held(count: Count, tree: Tree) -> Array:
+    """(n,) [N m or N] what dry friction holds at each coordinate at rest, where that counts.
+
+    Raises:
+        InputError: a coupled joint has friction: then several coordinates share it.
+    """
+    found = np.zeros(tree.n)
+    if count.friction:
+        rows = {tree.motions[row]: j for j, row in enumerate(tree.coordinate_rows.tolist())}
+        for joint in tree.mechanism.joints:
+            for name in joint.coordinates if joint.friction else ():
+                if name not in rows:
+                    problem = f"does not go with the friction of '{name}', which follows other joints"
+                    raise InputError(Fault(("friction",), problem))
+                found[rows[name]] = joint.friction
+    return found

@@ -29,15 +29,20 @@ class Terms:
     def of(count: Count, coordinates: Iterable[Coordinate]) -> Terms:
         """Of what a goal counts of these coordinates, or of its own among them."""
         weighted = ", weighted" if any(factor != 1 for factor in count.joints.values()) else ""
+        if count.heat:
+            name = "most heat in any motor" if count.torque == "peak" else "heat in all motors together"
+            return Terms(name + weighted, "W")
         if count.share_of:
             name = "largest share of any motor" if count.torque == "peak" else "root mean square share of all motors"
             return Terms(name + weighted, "share")
-        unit = load_unit(coordinates)
+        unit, beyond = load_unit(coordinates), " beyond what friction holds" if count.friction else ""
         what = "force" if unit == "N" else "torque"
-        return Terms(f"{'largest' if count.torque == 'peak' else 'root mean square'} {what}{weighted}", unit)
+        return Terms(f"{'largest' if count.torque == 'peak' else 'root mean square'} {what}{beyond}{weighted}", unit)
 
     def show(self, value: float) -> str:
-        """A value with its unit."""
+        """A value with its unit; of heat its root is given."""
+        if self.unit == "W":
+            return f"{value**2:.4g} W"
         return f"{100 * value:.3g} %" if self.unit == "share" else f"{value:.5g} {self.unit}"
 
     def sentence(self, value: float, before: float, bound: float | None) -> str:
@@ -54,7 +59,7 @@ class Score:
     """A mechanism's goal and how far it is reached.
 
     Attributes:
-        value, before: what is left with the springs and without, in the unit of `terms`.
+        value, before: what is left with the springs and without, in the unit of `terms`; of heat its root.
         bound: what no springs on the pairs of the design leave less than, where a design for this goal says it.
     """
 

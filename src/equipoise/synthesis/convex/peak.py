@@ -17,6 +17,7 @@ from ...kinematics.sampling import inside
 from ...model.arrays import Array, Booleans, Integers, frozen, vec3
 from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
+from ..goal import held
 from ..load import Load, extremes
 from ..problem import Problem
 from ..states import States
@@ -70,7 +71,7 @@ class Peak(Goal):
             message = "the largest torque over a cone of tilts is not known for parts that have weight; rms is"
             raise InputError(Fault(("tilt",), message))
         to_w = np.linalg.pinv(np.concatenate(reduced.columns, axis=1))
-        states = peak_states(problem)
+        states, spared = peak_states(problem), friction(problem)
         L, low, high = [], [], []
         each: list[tuple[slice, Array, Array]] = []
         start = 0
@@ -78,7 +79,7 @@ class Peak(Goal):
             rows, ends = [], []
             for T, torque in torque_ends(reduced.blocks, loads, problem.judged, states):
                 rows.append((T @ to_w * problem.scale[:, None]).reshape(-1, len(reduced.d)))
-                ends.append((torque * problem.scale[:, None, None]).reshape(-1, len(loads), 2))
+                ends.append(((torque + spared) * problem.scale[:, None, None]).reshape(-1, len(loads), 2))
             L.append(np.concatenate(rows))
             own = np.concatenate(ends)
             place = slice(start, start + len(own))
@@ -87,7 +88,7 @@ class Peak(Goal):
             high.append(own[:, :, 1].max(axis=1))
             start = place.stop
         least, most = np.concatenate(low), np.concatenate(high)
-        unit = float(max(most.max(), -least.min())) or 1.0
+        unit = max(0.0, float(most.max()), -float(least.min())) or 1.0
         scaled = tuple((place, a / unit, b / unit) for place, a, b in each)
         L = np.concatenate(L) / unit
         return Peak(reduced, L, least / unit, most / unit, scaled, unit, np.arange(len(reduced.blocks)))
@@ -100,7 +101,7 @@ class Peak(Goal):
         return self._size((residual(self.reduced, parts) - self.reduced.d) @ self.L.T)
 
     def _size(self, torque: Array) -> Array:
-        """(..., rows) size of the torque where the parts make `torque` (..., rows)."""
+        """(..., rows) size of the torque where the parts make `torque` (..., rows); below 0 where friction holds."""
         return np.maximum(torque + self.high, -torque - self.low)
 
     def torque(self, parts: Parts) -> Array:
@@ -217,10 +218,23 @@ class Peak(Goal):
 
 def largest(problem: Problem) -> float:
     """[N m] the largest torque of what stays, without any parts; see `Peak`."""
-    states = peak_states(problem)
+    states, spared = peak_states(problem), friction(problem)
     ends = (torque for _, torque in torque_ends((), problem.loads, problem.judged, states))
     scale = problem.scale[:, None, None]
-    return max(float(np.abs(scale * one).max(initial=0.0)) for one in ends)
+    each = (scale * (one + spared) for one in ends)
+    return max(max(0.0, float(one[..., 1].max()), -float(one[..., 0].min())) for one in each)
+
+
+def friction(problem: Problem) -> Array:
+    """(n, 1, 2) what is to be added to the least and the largest torque, for dry friction holds so much.
+
+    Raises:
+        InputError: in a motion, where it holds nothing.
+    """
+    if problem.goal.count.friction and problem.goal.poses.motions:
+        raise InputError(Fault(("friction",), "does not go with a motion: it holds what stands still"))
+    holds = held(problem.goal.count, Tree.of(problem.judged))
+    return np.stack([holds, -holds], axis=-1)[:, None]
 
 
 def torque_ends(
