@@ -11,10 +11,10 @@ from pydantic import BeforeValidator, Field
 
 from ..model.coordinate import Coordinate
 from ..model.errors import Fault, InputError, Path
-from ..model.goal import SHARES, TORQUES, Count, Goal, Gravity, Loads, Tool, masses
+from ..model.goal import SHARES, TORQUES, Cost, Count, Goal, Gravity, Loads, Tool, masses
 from ..model.motion import Box, Listed, Motion, Where
 from ..model.units import number, quantity
-from .fields import Angle, Item, Point, Text, number_of, one_of, whole
+from .fields import Angle, Item, Point, Stiffness, Text, number_of, one_of, whole
 from .fields import Gravity as Vector
 from .motion_table import read_motion, read_poses
 
@@ -163,6 +163,33 @@ def _at(path: Path, make: Callable[..., Made], *args: Any, **values: Any) -> Mad
         raise InputError(inside) from None
 
 
+class NumberItem(Item):
+    noun = "a limit"
+    limit: Annotated[int, BeforeValidator(whole)]
+
+
+class StiffnessItem(Item):
+    noun = "a limit"
+    limit: Stiffness
+
+
+class EnergyItem(Item):
+    noun = "a limit"
+    limit: Annotated[float, number_of("energy")]
+
+
+class CostItem(Item):
+    noun = "cost"
+    springs: NumberItem | None = None
+    stiffness: StiffnessItem | None = None
+    energy: EnergyItem | None = None
+
+    def cost(self) -> Cost:
+        """Its value."""
+        given = {name: getattr(self, name) for name in ("springs", "stiffness", "energy")}
+        return Cost(**{name: item.limit for name, item in given.items() if item is not None})
+
+
 class GoalItem(Item):
     noun = "a goal"
     loads: list[ToolItem] = Field(default_factory=list)
@@ -170,6 +197,7 @@ class GoalItem(Item):
     tilt: Angle = 0.0
     poses: PosesItem = PosesItem()
     count: CountItem = CountItem()
+    cost: CostItem = CostItem()
 
     def goal(self, folder: FilePath, coordinates: Sequence[Coordinate]) -> Goal:
         """Its value; files are relative to the folder of the mechanism file.
@@ -181,10 +209,11 @@ class GoalItem(Item):
         gravity = (Gravity(**item.values()) for item in self.gravity)
         loads = Loads(tuple(tools), tuple(gravity), self.tilt)
         where = _at(("poses",), self.poses.where, folder, coordinates)
-        return Goal(loads, where, _at(("count",), Count, **self.count.values()))
+        return Goal(loads, where, _at(("count",), Count, **self.count.values()), _at(("cost",), self.cost.cost))
 
 
 ITEMS: dict[str, type[Item]] = {"loads": ToolItem, "gravity": GravityItem, "count": CountItem}
+COSTS: dict[str, type[Item]] = {"springs": NumberItem, "stiffness": StiffnessItem, "energy": EnergyItem}
 POSES: dict[str, type[Item]] = {"motion": MotionItem, "motions": MotionItem, "list": ListItem, "box": BoxItem}
 
 
@@ -192,4 +221,6 @@ def model_at(path: Path) -> type[Item]:
     """The model of what stands at a path inside the goal."""
     if path[:1] == ("poses",):
         return POSES.get(str(path[1]), PosesItem) if len(path) > 1 else PosesItem
+    if path[:1] == ("cost",):
+        return COSTS.get(str(path[1]), CostItem) if len(path) > 1 else CostItem
     return ITEMS.get(str(path[0]), GoalItem) if path else GoalItem

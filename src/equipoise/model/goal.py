@@ -144,12 +144,46 @@ class Count:
 
 
 @dataclass(frozen=True)
+class Cost:
+    """What a design may cost at most.
+
+    Attributes:
+        springs: their number.
+        stiffness: [N/m] the rates of all springs together.
+        energy: [J] the energy that they store together, on the mean over the poses.
+    """
+
+    springs: int | None = None
+    stiffness: float | None = None
+    energy: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in LIMITED:
+            dimension, value = LIMITED[name], getattr(self, name)
+            if value is not None:
+                most = quantity(value, dimension, name)
+                object.__setattr__(self, name, number(name, most, positive=True))
+        if self.springs is not None and (self.springs != int(self.springs) or self.springs < 1):
+            raise InputError(Fault(("springs",), f"must be a whole number of at least 1, found {self.springs}"))
+
+    def to_dict(self) -> dict[str, Any]:
+        """As a mechanism file has it."""
+        every = {name: getattr(self, name) for name in ("springs", *LIMITED)}
+        return {name: {"limit": value} for name, value in every.items() if value is not None}
+
+
+LIMITED = {"stiffness": "stiffness", "energy": "energy"}
+"""What is limited for all springs together, and its dimension."""
+
+
+@dataclass(frozen=True)
 class Goal:
     """What a design is for."""
 
     loads: Loads = field(default_factory=Loads)
     poses: Where = field(default_factory=Where)
     count: Count = field(default_factory=Count)
+    cost: Cost = field(default_factory=Cost)
 
     def __bool__(self) -> bool:
         """Whether anything but what counts by default is asked for."""
@@ -175,6 +209,7 @@ class Goal:
         counted = {name: value for name, value in counted.items() if value != defaults[name]}
         poses = self.poses.to_dict()
         found = {"loads": tools, "gravity": gravity, "tilt": loads.tilt, "poses": poses, "count": counted}
+        found["cost"] = self.cost.to_dict()
         return {name: value for name, value in found.items() if value}
 
     def counting(self, **changes: Any) -> Goal:

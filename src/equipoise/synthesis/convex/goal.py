@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array, Integers
 from .least_squares_form import LeastSquaresForm
-from .polish import Parts, best_amounts, polish, residual
+from .polish import Parts, best_amounts, capped, limited, polish, rms_of
 from .semidefinite import Bound, Program, least_rms, rms_program
 
 MANY = 8  # sets that are polished to the end; of more the better ones
@@ -85,13 +85,22 @@ class Rms(Goal):
         if len(start) > MANY:
             start, value = polish(self.reduced, start, SHORT)
             start = start[np.argsort(value, kind="stable")[: max(MANY, len(start) // 4)]]
-        return polish(self.reduced, start)
+        found, value = polish(self.reduced, start)
+        return self._within(found, value) if self.reduced.limits else (found, value)
+
+    def _within(self, found: Parts, value: Array) -> tuple[Parts, Array]:
+        """The sets within the limits: those that are, as they are."""
+        fit = capped(self.reduced, found)
+        over = np.flatnonzero((fit.k < found.k * (1 - 1e-9)).any(axis=1))
+        if len(over):
+            found = replace(found, k=found.k.copy(), u=found.u.copy())
+            best, less = limited(self.reduced, found[over])
+            found.k[over], found.u[over], value[over] = best.k, best.u, less
+        return found, value
 
     def loads(self, parts: Parts) -> tuple[Array, Array]:
         x, cases = parts.unknowns(self.reduced), self.reduced.cases
         return np.array([case.rms(x) for case in cases]), np.array([float(np.linalg.norm(c.load)) for c in cases])
 
 
-def rms(reduced: LeastSquaresForm, parts: Parts) -> Array:
-    """(batch,) root mean square torque that sets of parts leave, as a share of the unbalanced one."""
-    return np.hypot(np.linalg.norm(residual(reduced, parts), axis=1), reduced.rest)
+rms = rms_of

@@ -45,6 +45,14 @@ class Case:
 
 
 @frozen
+class Limit:
+    """What all unknowns together may cost: ``sum_b charge_b x_b <= 1``, in shares of the limit."""
+
+    name: str
+    charge: tuple[Array, ...]
+
+
+@frozen
 class LeastSquaresForm:
     """The compressed problem, in units of the unbalanced torque.
 
@@ -55,6 +63,7 @@ class LeastSquaresForm:
         unbalanced: [N m] root mean square torque to be balanced, all joints together, the weighted mean of all loads.
         cases: each load by itself.
         averaged: the averages are exact over all configurations, not over samples.
+        limits: what the unknowns may cost.
     """
 
     problem: Problem
@@ -66,12 +75,14 @@ class LeastSquaresForm:
     unbalanced: float
     averaged: bool
     cases: tuple[Case, ...]
+    limits: tuple[Limit, ...] = ()
 
     def on(self, chosen: Sequence[int]) -> LeastSquaresForm:
         """The same problem restricted to some of its blocks (by number)."""
         cases = tuple(Case(tuple(case.columns[i] for i in chosen), case.load) for case in self.cases)
         parts = {name: tuple(getattr(self, name)[i] for i in chosen) for name in ("blocks", "forms", "cost")}
-        return replace(self, cases=cases, **parts)
+        limits = tuple(Limit(one.name, tuple(one.charge[i] for i in chosen)) for one in self.limits)
+        return replace(self, cases=cases, limits=limits, **parts)
 
     @cached_property
     def columns(self) -> tuple[Array, ...]:
@@ -92,7 +103,8 @@ class LeastSquaresForm:
         cases = tuple(Case(scaled(case.columns), case.load) for case in self.cases)
         forms = tuple(block.form(own) for block, own in zip(self.blocks, scaled(self.columns), strict=True))
         blocks = tuple(block for block, _ in larger)
-        return replace(self, blocks=blocks, forms=forms, cost=scaled(self.cost), cases=cases)
+        limits = tuple(Limit(one.name, scaled(one.charge)) for one in self.limits)
+        return replace(self, blocks=blocks, forms=forms, cost=scaled(self.cost), cases=cases, limits=limits)
 
     @property
     def useful(self) -> list[int]:
@@ -128,7 +140,19 @@ def build(problem: Problem, progress: Progress | None = None) -> LeastSquaresFor
     forms = tuple(block.form(own) / unit for block, own in zip(blocks, columns, strict=True))
     cost = tuple(block.cost(own) for block, own in zip(blocks, _split(energy, blocks), strict=True))
     cases = tuple(Case(_split(F[:, :-1], blocks), F[:, -1]) for F in _by_load(problem, factors))
-    return LeastSquaresForm(problem, blocks, forms, d / unit, float(rest) / unit, cost, total, averaged, cases)
+    limits = tuple(_limits(problem, _split(energy, blocks)))
+    return LeastSquaresForm(problem, blocks, forms, d / unit, float(rest) / unit, cost, total, averaged, cases, limits)
+
+
+def _limits(problem: Problem, energy: Sequence[Array]) -> Iterator[Limit]:
+    """What the goal limits; weights have no rate, and their energy is none that is stored."""
+    cost = problem.goal.cost
+    springs = [0.0 if block.weighs else 1.0 for block in problem.blocks]
+    if cost.stiffness is not None:
+        each = (s * block.amount / cost.stiffness for s, block in zip(springs, problem.blocks, strict=True))
+        yield Limit("stiffness", tuple(each))
+    if cost.energy is not None:
+        yield Limit("energy", tuple(s * own / cost.energy for s, own in zip(springs, energy, strict=True)))
 
 
 def _by_load(problem: Problem, factors: Sequence[Array]) -> Iterator[Array]:

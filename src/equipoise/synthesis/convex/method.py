@@ -155,19 +155,21 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
         raise InputError(Fault(("exact",), "is about all poses, and the goal gives some"))
     reduced = _worth_solving(build(problem, options.progress))
     goal = Peak.of(reduced) if problem.objective == "peak" else Rms(reduced)
-    search = SpringSearch(goal, options.springs or SPRINGS_TRIED, options.seed, options.progress or silent)
+    springs = options.springs or problem.goal.cost.springs
+    search = SpringSearch(goal, springs or SPRINGS_TRIED, options.seed, options.progress or silent)
     if weights is not None:
         search.start(weights.springs_on(reduced), weights.share * weights.reduced.unbalanced / goal.unit)
     bound = _bound(goal)
     least = bound if isinstance(goal, Rms) else _bound(Rms(reduced))  # exact or not: the mean square tells best
     possible, asked_less = least is None or least < FEASIBLE, weights is not None and weights.share > 0
-    stated = least is None or possible or asked_less or problem.given_poses
+    apart = problem.given_poses or bool(reduced.limits)  # what springs alone could do is not what is asked
+    stated = least is None or possible or asked_less or apart
     infeasible = None if stated else infeasible_on(reduced, least)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
-    found = _found(search, options.springs is None)
-    if weights is None:
-        found = preferred(goal, found, search.found, options.springs or found.count + 1, options.prefer)
+    found = _found(search, springs is None)
+    if weights is None and not reduced.limits:  # what leaves as much may cost more
+        found = preferred(goal, found, search.found, springs or found.count + 1, options.prefer)
     averaged = reduced.averaged and problem.objective == "rms"
     if bound is not None:
         bound = min(0.0 if possible else bound, found.value) * goal.unit
@@ -182,7 +184,7 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
         averaged=averaged,
         samples=None if averaged else len(problem.states),
         free_parameters=_free(problem, options),
-        exact_feasible=None if least is None or problem.given_poses else possible,
+        exact_feasible=None if least is None or apart else possible,
         infeasible=infeasible,
         loads=load_residuals(goal, found.parts),
         front=tuple(_rows(search)) if options.front else (),

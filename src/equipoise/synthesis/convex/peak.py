@@ -24,7 +24,7 @@ from ..states import States
 from .blocks import Block
 from .goal import Goal
 from .least_squares_form import LeastSquaresForm, torque_rows
-from .polish import Parts, best_amounts, jacobian, polish, residual
+from .polish import Parts, best_amounts, capped, charges, jacobian, polish, residual
 from .semidefinite import Bound, Program, least, peak_program
 
 FIRST = 600  # rows (pose and coordinate) of the first round
@@ -152,6 +152,7 @@ class Peak(Goal):
     def improve(self, parts: Parts) -> tuple[Parts, Array]:
         """Of the most promising of them, as they are and polished for the mean square."""
         starts = Parts.joined([best_amounts(self.reduced, parts), polish(self.reduced, parts)[0]])
+        starts = capped(self.reduced, starts)
         peaks = self.torques(starts).max(axis=1)
         found = [self.polish(starts[i : i + 1]) for i in np.argsort(peaks, kind="stable")[:KEPT].tolist()]
         return Parts.joined([own for own, _ in found]), np.array([value for _, value in found])
@@ -164,7 +165,7 @@ class Peak(Goal):
         """
         from scipy.optimize import linprog
 
-        now, trust = start, 0.3
+        now, trust = capped(self.reduced, start), 0.3
         made = self.torque(now)
         size = self._size(made)
         value = float(size.max())
@@ -187,7 +188,7 @@ class Peak(Goal):
             )
             if program.x is None:
                 break
-            trial = now.moved(self.reduced, program.x[:-1].reshape(1, *lower.shape))
+            trial = capped(self.reduced, now.moved(self.reduced, program.x[:-1].reshape(1, *lower.shape)))
             made_trial = self.torque(trial)
             size_trial = self._size(made_trial)
             new = float(size_trial.max())
@@ -213,6 +214,10 @@ class Peak(Goal):
             own[:, first : first + block.shape] = A
             rows.append(own)
             sides.append(b)
+        for i in range(len(self.reduced.limits)):
+            charge, slopes = charges(self.reduced, now, i)
+            rows.append(np.append(slopes.ravel(), 0.0)[None])
+            sides.append(np.array([1 - charge.sum()]))
         return np.concatenate(rows), np.concatenate(sides)
 
 

@@ -17,6 +17,7 @@ from .least_squares_form import LeastSquaresForm
 
 ITERATIONS = 150
 STALL = 1e-13  # residual norm (share of the unbalanced torque) that cannot be improved upon in double precision
+LEAST_PRICE, MOST_PRICE, HALVINGS, SHORT = 1e-10, 10.0, 14, 40  # of a limit, in shares of the mean square
 LOG_RANGE = 14.0  # an amount stays within e^+-14 of where it starts
 
 
@@ -120,15 +121,21 @@ def best_amounts(reduced: LeastSquaresForm, parts: Parts) -> Parts:
     return Parts(parts.block, np.maximum(k, np.maximum(floor, 1e-9)), parts.u)
 
 
-def polish(reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS) -> tuple[Parts, Array]:
+def polish(
+    reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS, price: Array | None = None
+) -> tuple[Parts, Array]:
     """Improve every set of a batch.
+
+    Args:
+        price: (batch,) of what the parts cost, see `limits`: then the mean square plus that is what is lowered.
 
     Returns:
         The improved sets and their root mean square torque (batch,), as a share of the unbalanced one.
     """
     reference = np.log(start.k)
     now, damping = Parts(start.block, start.k.copy(), start.u.copy()), np.full(len(start), 1e-3)
-    r = residual(reduced, now)
+    price = np.zeros(len(start)) if price is None else price
+    r = _priced(reduced, now, price)
     cost = np.einsum("br,br->b", r, r)
     alive = np.ones(len(start), bool)
     slow = np.zeros(len(start), int)
@@ -136,8 +143,8 @@ def polish(reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS
         batch = np.flatnonzero(alive)
         if not len(batch):
             break
-        trial = _step(reduced, now[batch], r[batch], damping[batch], reference[batch])
-        r_trial = residual(reduced, trial)
+        trial = _step(reduced, now[batch], r[batch], damping[batch], reference[batch], price[batch])
+        r_trial = _priced(reduced, trial, price[batch])
         cost_trial = np.einsum("br,br->b", r_trial, r_trial)
         better = cost_trial < cost[batch]
         gain = 1 - cost_trial / np.maximum(cost[batch], 1e-300)
@@ -147,12 +154,32 @@ def polish(reduced: LeastSquaresForm, start: Parts, iterations: int = ITERATIONS
         damping[batch] = np.clip(np.where(better, damping[batch] * 0.2, damping[batch] * 8.0), 1e-14, 1e8)
         slow[batch] = np.where(better & (gain > 1e-4), 0, slow[batch] + 1)
         alive[batch] = (cost[batch] > STALL**2) & (slow[batch] < 15) & (damping[batch] < 1e7)
-    return now, np.sqrt(cost + reduced.rest**2)
+    torque = residual(reduced, now)
+    return now, np.sqrt(np.einsum("br,br->b", torque, torque) + reduced.rest**2)
 
 
-def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, reference: Array) -> Parts:
-    """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
+def _priced(reduced: LeastSquaresForm, parts: Parts, price: Array) -> Array:
+    """(batch, rows): the residual, and of each part the root of its price, so that squares add up."""
+    r = residual(reduced, parts)
+    return np.hstack([r, np.sqrt(price[:, None] * charges(reduced, parts)[0])]) if reduced.limits else r
+
+
+def _priced_slopes(reduced: LeastSquaresForm, x: Parts, price: Array) -> Array:
+    """The derivative of `_priced`."""
     J = jacobian(reduced, x)
+    if not reduced.limits:
+        return J
+    charge, slopes = charges(reduced, x)
+    root = np.sqrt(price[:, None] / np.maximum(charge, 1e-300))[..., None] / 2 * slopes
+    B, S, width = slopes.shape
+    own = np.zeros((B, S, S, width))
+    own[:, np.arange(S), np.arange(S)] = root
+    return np.concatenate([J, own.reshape(B, S, S * width)], axis=1)
+
+
+def _step(reduced: LeastSquaresForm, x: Parts, r: Array, damping: Array, reference: Array, price: Array) -> Parts:
+    """One damped Gauss-Newton step, projected onto possible shapes, with outward directions at the boundary frozen."""
+    J = _priced_slopes(reduced, x, price)
     B, S, width = *x.k.shape, 1 + x.u.shape[2]
     free = free_steps(reduced, x, np.einsum("bri,br->bi", J, r).reshape(B, S, width))
     J = (J.reshape(B, -1, S, width).transpose(0, 2, 1, 3) @ free).transpose(0, 2, 1, 3).reshape(B, -1, S * width)
@@ -173,6 +200,57 @@ def jacobian(reduced: LeastSquaresForm, x: Parts) -> Array:
         J[at, :, 0], J[at, :, 1 : 1 + own.shape] = own.acts(reduced.forms[number], x.u[at, : own.shape])
     J *= x.k[..., None, None]
     return J.transpose(0, 2, 1, 3).reshape(len(x), len(reduced.d), -1)
+
+
+def charges(reduced: LeastSquaresForm, parts: Parts, number: int | None = None) -> tuple[Array, Array]:
+    """What each part costs, in shares of the limits (batch, parts), and its derivative (batch, parts, 1 + shape).
+
+    Of all limits together, or of the one with this number; by the logarithm of the amount, and by the shape.
+    """
+    limits = reduced.limits if number is None else reduced.limits[number : number + 1]
+    found, slopes = np.zeros(parts.k.shape), np.zeros((*parts.k.shape, 1 + parts.u.shape[2]))
+    for own, at, block in by_block(reduced, parts.block):
+        u, k = parts.u[at, : own.shape], parts.k[at]
+        for limit in limits:
+            found[at] += k * (own.part(u) @ limit.charge[block])
+            slopes[at, 1 : 1 + own.shape] += k[:, None] * (own.slopes(u) @ limit.charge[block])
+    slopes[..., 0] = found
+    return found, slopes
+
+
+def capped(reduced: LeastSquaresForm, parts: Parts) -> Parts:
+    """The sets with amounts so much less, where a set costs more than a limit."""
+    most = np.ones(len(parts))
+    for i in range(len(reduced.limits)):
+        most = np.maximum(most, charges(reduced, parts, i)[0].sum(axis=1))
+    return Parts(parts.block, parts.k / most[:, None], parts.u)
+
+
+def limited(reduced: LeastSquaresForm, start: Parts) -> tuple[Parts, Array]:
+    """Improve every set of a batch within the limits: at the price at which it just costs them, by halving.
+
+    Returns:
+        As `polish`.
+    """
+    best = capped(reduced, start)
+    value = rms_of(reduced, best)
+    low, high = np.full(len(start), LEAST_PRICE), np.full(len(start), MOST_PRICE)
+    for _ in range(HALVINGS):
+        price = np.sqrt(low * high)
+        found, _ = polish(reduced, best, SHORT, price)
+        over = (capped(reduced, found).k < found.k * (1 - 1e-9)).any(axis=1)
+        low, high = np.where(over, price, low), np.where(over, high, price)
+        fit = capped(reduced, found)
+        new = rms_of(reduced, fit)
+        better = new < value
+        for mine, own in ((best.k, fit.k), (best.u, fit.u), (value, new)):
+            mine[better] = own[better]
+    return best, value
+
+
+def rms_of(reduced: LeastSquaresForm, parts: Parts) -> Array:
+    """(batch,) root mean square torque that sets of parts leave, as a share of the unbalanced one."""
+    return np.hypot(np.linalg.norm(residual(reduced, parts), axis=1), reduced.rest)
 
 
 def free_steps(reduced: LeastSquaresForm, x: Parts, gradient: Array) -> Array:

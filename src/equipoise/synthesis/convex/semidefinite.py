@@ -71,6 +71,13 @@ class Program:
                 pieces = [(row, start, A) for row, (start, A, _) in zip(rows, own, strict=False)]
                 self.add(kind, np.concatenate([g for _, _, g in own]), pieces)
 
+        for limit in reduced.limits:
+            charge = [
+                (0, start, (own * scale)[None])
+                for own, scale, start in zip(limit.charge, self.scale, self.starts, strict=False)
+            ]
+            self.add("nonnegative", np.ones(1), charge)
+
     def add(self, kind: str, b: Array, pieces: Iterable[tuple[int, int, Array]]) -> None:
         """Rows with ``b - A x`` in a cone; A is zero but for pieces (its first row, its first unknown, the piece)."""
         for row, start, A in pieces:
