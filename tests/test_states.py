@@ -132,7 +132,7 @@ def test_a_motion_on_the_command_line(run, tmp_path):
     )
     code, text, _ = run("design", arm, "--span", 1, "--radius", "200mm", "--springs", 2, "--motion", csv, "-o", out)
     assert code == 0
-    assert "(over the motion, at 281 times)" in text
+    assert "over the motion, at 281 times" in text
     assert "no springs on these pairs and regions do better than" in run("check", out)[1]
     text = run("simulate", out, "--motion", csv, "--plot", tmp_path / "motion.svg")[1]
     assert "MuJoCo's inverse dynamics and the torques predicted here differ by at most" in text

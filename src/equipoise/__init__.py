@@ -27,8 +27,9 @@ if TYPE_CHECKING:
     from .io import load, save
     from .model.elements import Guide, JointElement, LineElement, Pulley, Spring, TorsionSpring, laws
     from .model.errors import EquipoiseError, InfeasibleError, InputError, UnsupportedError
-    from .model.goal import Count, Goal, Gravity, Loads, Tool
+    from .model.goal import Cost, Count, Goal, Gravity, Loads, Tool
     from .model.mechanism import Body, Coupling, Joint, Loop, Mechanism, PointMass, Workspace
+    from .model.motion import Box, Listed, Motion, Where
     from .model.payload import Payload
     from .proof.certificate import Certified, certify, verify
     from .report.export import export
@@ -49,7 +50,9 @@ if TYPE_CHECKING:
 __all__ = [
     "Balance",
     "Body",
+    "Box",
     "Certified",
+    "Cost",
     "Count",
     "Coupling",
     "Design",
@@ -62,10 +65,12 @@ __all__ = [
     "Joint",
     "JointElement",
     "LineElement",
+    "Listed",
     "Load",
     "Loads",
     "Loop",
     "Mechanism",
+    "Motion",
     "Payload",
     "PointMass",
     "Problem",
@@ -75,6 +80,7 @@ __all__ = [
     "Tool",
     "TorsionSpring",
     "UnsupportedError",
+    "Where",
     "Workspace",
     "__version__",
     "adjust",
@@ -113,7 +119,8 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "io": ("load", "save"),
     "model.elements": ("Guide", "JointElement", "LineElement", "Pulley", "Spring", "TorsionSpring", "laws"),
     "model.errors": ("EquipoiseError", "InfeasibleError", "InputError", "UnsupportedError"),
-    "model.goal": ("Count", "Goal", "Gravity", "Loads", "Tool"),
+    "model.goal": ("Cost", "Count", "Goal", "Gravity", "Loads", "Tool"),
+    "model.motion": ("Box", "Listed", "Motion", "Where"),
     "model.mechanism": ("Body", "Coupling", "Joint", "Loop", "Mechanism", "PointMass", "Workspace"),
     "model.payload": ("Payload",),
     "study": ("study",),

@@ -157,7 +157,7 @@ class Where:
             return f"{count:,} random poses with the point of {self.box.body} in the box"
         if self.listed is not None:
             return f"the {count:,} poses of the list"
-        return f"over {'the motion' if len(self.motions) == 1 else f'{len(self.motions)} motions'}, at {count:,} times"
+        return f"{'the motion' if len(self.motions) == 1 else f'{len(self.motions)} motions'}, at {count:,} times"
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """Every coordinate that is named, and in which part."""

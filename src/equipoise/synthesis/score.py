@@ -73,14 +73,15 @@ class Score:
         return self.terms.sentence(self.value, self.before, self.bound)
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data."""
+        """As plain data; heat in watts."""
+        power = 2 if self.terms.unit == "W" else 1
         return {
             "for": self.goal.to_dict(),
             "name": self.terms.name,
             "unit": self.terms.unit,
-            "value": self.value,
-            "before": self.before,
-            "bound": self.bound,
+            "value": self.value**power,
+            "before": self.before**power,
+            "bound": None if self.bound is None else self.bound**power,
         }
 
 

@@ -16,6 +16,7 @@ from ...io.yaml import to_text
 from ...model.coordinate import Coordinate, load_unit
 from ...model.masses import lumped_masses
 from ...synthesis.fewest import fewest
+from ...synthesis.score import score
 from ..numbers import percent, torque
 from ..schematic import symbols
 from ..text import reached
@@ -164,7 +165,9 @@ def certificate_section(balance: Balance) -> Section:
         rows.append(("mobility by rank, by counting", f"{balance.mobility.numerical}, {balance.mobility.gruebler}"))
     blocks: list[Block] = [Table.of("Certificate", ("", "found"), rows)]
     blocks += _bound(balance)
-    least = fewest(balance.mechanism)
+    if (goal := score(balance.mechanism)) is not None:
+        blocks.append(Paragraph(f"What it is for: {goal}.", strong=True))
+    least = None if goal is not None and goal.goal.poses.chosen else fewest(balance.mechanism)
     if least is not None:
         springs = f"{least.springs} spring{'s' * (least.springs > 1)}"
         blocks.append(Paragraph(f"Exact balance takes at least {springs} of zero free length; {least}."))
@@ -175,6 +178,8 @@ def _bound(balance: Balance) -> Iterator[Block]:
     """As the method that made the design wrote it into the file."""
     made = balance.mechanism.provenance
     unbalanced, left, bound, gap = (made.get(name) for name in ("unbalanced", "residual", "bound", "certified_gap"))
+    if "goal" in made:
+        return  # said in its own terms
     if not all(isinstance(value, (int, float)) for value in (unbalanced, left)) or not unbalanced or left is None:
         unknown = "The file does not say how its springs were chosen"
         if balance.exact:
