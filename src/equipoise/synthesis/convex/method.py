@@ -163,8 +163,7 @@ def _springs(problem: Problem, options: SolverOptions, weights: Lightest | None 
     least = bound if isinstance(goal, Rms) else _bound(Rms(reduced))  # exact or not: the mean square tells best
     possible, asked_less = least is None or least < FEASIBLE, weights is not None and weights.share > 0
     apart = problem.given_poses or bool(reduced.limits)  # what springs alone could do is not what is asked
-    stated = least is None or possible or asked_less or apart
-    infeasible = None if stated else infeasible_on(reduced, least)
+    infeasible = None if least is None or possible or asked_less or apart else infeasible_on(reduced, least)
     if options.exact and infeasible is not None:
         raise InfeasibleError(str(infeasible))
     found = _found(search, springs is None)
