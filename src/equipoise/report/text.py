@@ -133,7 +133,7 @@ def design_lines(design: Design) -> Iterator[RenderableType]:
     gap = design.certified_gap
 
     def left(value: float) -> str:
-        return terms.show(value) if terms.unit == "share" else f"{torque(value, floor)} {terms.unit}"
+        return terms.show(value) if terms.unit in ("share", "W") else f"{torque(value, floor)} {terms.unit}"
 
     count = _count(design.mechanism.springs, "spring")
     leave = "leaves" if len(design.mechanism.springs) == 1 else "leave"
