@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -42,8 +42,8 @@ class CounterweightBlock(Block):
     radius: float
     weighs: ClassVar[bool] = True
 
-    @staticmethod
-    def each(mechanism: Mechanism, given: Amount | Mapping[str, Amount]) -> Iterator[CounterweightBlock]:
+    @classmethod
+    def each(cls, mechanism: Mechanism, given: Amount | Mapping[str, Amount]) -> Iterator[Self]:
         """One for every link that moves, within one distance [m], or for each of the bodies that have one.
 
         Raises:
@@ -64,7 +64,7 @@ class CounterweightBlock(Block):
             if not least <= radius <= most:
                 problem = f"must be between {least:.1g} m and {most:.1g} m, found {radius:g} m"
                 raise InputError(Fault(("counterweights", body), problem))
-            yield CounterweightBlock(body, radius)
+            yield cls(body, radius)
 
     @property
     def unknowns(self) -> int:
@@ -90,13 +90,17 @@ class CounterweightBlock(Block):
         return np.stack(rates, axis=-1) @ self._rows(), energy.sum(axis=0)
 
     def _ends(self) -> Array:
-        """Four points whose unit masses span all weights (4, 3) [m]."""
-        return self.radius * np.vstack([np.zeros(3), np.eye(3)])
+        """Points whose unit masses span all weights (unknowns, 3) [m]."""
+        return self.radius * self._shapes()
 
     @staticmethod
-    def _rows() -> Array:
-        """What the energies of unit masses at `_ends` are in those of the unknowns: the first, and differences."""
-        return np.vstack([[1.0, -1, -1, -1], np.eye(SIZE)[1:]])
+    def _shapes() -> Array:
+        """(unknowns, shape) of them."""
+        return np.vstack([np.zeros(3), np.eye(3)])
+
+    def _rows(self) -> Array:
+        """What the energies of unit masses at `_ends` are in those of the unknowns (unknowns, unknowns)."""
+        return np.linalg.inv(self.part(self._shapes())).T
 
     def cones(self) -> Iterable[Cone]:
         yield Cone("second order", np.eye(SIZE))
