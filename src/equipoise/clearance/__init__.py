@@ -3,5 +3,6 @@
 from .constraint import ClearanceConstraint
 from .segments import closest
 from .verdict import Clearance, Gap, SpringStates, clearance
+from .within import within
 
-__all__ = ["Clearance", "ClearanceConstraint", "Gap", "SpringStates", "clearance", "closest"]
+__all__ = ["Clearance", "ClearanceConstraint", "Gap", "SpringStates", "clearance", "closest", "within"]

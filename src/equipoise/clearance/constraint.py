@@ -28,6 +28,8 @@ class ClearanceConstraint:
         first, second = (self.pairs.radius[side] for side in (self.pairs.first, self.pairs.second))
         self.scale = np.maximum(least + first + np.where(self.pairs.solid, 0.0, second), THIN)
         self.wanted = least + first + second + MORE * self.scale
+        springs = range(self.springs)
+        self.ours = np.isin(self.pairs.first, springs) | np.isin(self.pairs.second, springs)  # what springs can change
         self.weight = 1 / np.sqrt(len(q))
 
     def __call__(self, ends: Array) -> tuple[Array, Array]:
@@ -36,7 +38,9 @@ class ClearanceConstraint:
         p = pairs.points(self.poses, np.concatenate([ends, pairs.ends[self.springs :]]))
         a, b, c, d = pairs.of_both(p)
         distance, s, t = closest(a, b, c, d)
-        pose, pair = np.nonzero(distance < self.wanted)  # a solid is farther away than the capsule that it lies in
+        pose, pair = np.nonzero(
+            (distance < self.wanted) & self.ours
+        )  # a solid is farther away than the capsule that it lies in
         a, b, c, d, s, t, distance = (x[pose, pair] for x in (a, b, c, d, s, t, distance))
         apart = a + s[:, None] * (b - a) - c - t[:, None] * (d - c)
         crossing = np.cross(b - a, d - c)  # where they meet, either side of it is as good as the other

@@ -65,6 +65,17 @@ class Clearance:
         """[m] inf where there is nothing to come close to."""
         return min((gap.distance for gap in self.gaps), default=np.inf)
 
+    @property
+    def of_springs(self) -> tuple[Gap, ...]:
+        """The gaps that a spring has a part in: what moving springs can change."""
+        springs = {line.spring for line in self.lines}
+        return tuple(gap for gap in self.gaps if springs & {gap.spring, gap.other})
+
+    @property
+    def least_of_springs(self) -> float:
+        """[m] inf where there is nothing for springs to come close to."""
+        return min((gap.distance for gap in self.of_springs), default=np.inf)
+
     def free(self, limit: float) -> float:
         """The share of the random poses in which every distance is at least `limit` [m]."""
         return float(np.mean(np.array(self.nearest) >= limit)) if self.nearest else 1.0

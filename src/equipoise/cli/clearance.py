@@ -16,6 +16,9 @@ def clearance(
     file: File,
     least: Annotated[str, typer.Option(help="good when every distance is at least this")] = "0 mm",
     samples: Annotated[int | None, typer.Option(min=1, help="random poses (default: the file's workspace)")] = None,
+    motion: Annotated[
+        Path | None, typer.Option(help="judge over the ranges of this motion: CSV, a column 'time' and coordinates")
+    ] = None,
     plot: Annotated[Path | None, typer.Option(help="draw the closest pose: .svg, .png or .pdf")] = None,
     seed: Annotated[int, typer.Option(min=0, help="of the random poses")] = 0,
     json: Json = False,
@@ -36,6 +39,11 @@ def clearance(
 
         check_drawable(plot)
     mechanism = terminal.load(file)
+    if motion is not None:
+        from ..clearance import within
+        from ..io.motion_table import read_motion
+
+        mechanism = within(mechanism, [read_motion(motion, mechanism.coordinates)])
     with terminal.progress_bar("measuring") as report:
         report("measuring distances", 0.0)
         found = judge(mechanism, samples=samples, seed=seed)

@@ -193,13 +193,13 @@ def _ordinary_lines(found: Ordinary) -> Iterator[RenderableType]:
     if found.room is not None and not found.room[1].links:
         yield Text(NOT_JUDGED, style="bold yellow")
     if found.moved and found.room is not None:
-        before, after = (f"{1e3 * room.least:.4g} mm" for room in found.room)
+        before, after = (f"{1e3 * room.least_of_springs:.4g} mm" for room in found.room)
         yield Text(
             f"  clearance: least distance {before} before and {after} now, peak residual "
             f"{percent(found.plain.relative)} of the unbalanced peak before and {percent(found.balance.relative)} now"
         )
-    elif found.room is not None and found.room[1].gaps:
-        least = 1e3 * found.room[1].least
+    elif found.room is not None and found.room[1].of_springs:
+        least = 1e3 * found.room[1].least_of_springs
         yield Text(f"  clearance: least distance {least:.4g} mm; that is enough, and nothing was moved")
     for row in found.to_dict()["springs"] if found.moved else ():
         (k, new_k), (force, new_force) = row["stiffness"], row["max_force"]

@@ -22,6 +22,7 @@ from ...model.errors import Fault, InputError, UnsupportedError
 from ...model.mechanism import Mechanism
 from ...model.units import AmountField
 
+LEAST = 0.005  # [m]
 RANK = 1e-9  # of the largest singular value: smaller ones are rounding
 POSES_PER_TERM = 40
 
@@ -42,11 +43,13 @@ class Ray:
 
 @dataclass(frozen=True)
 class Travel:
-    """How far attachments may be moved: `low` to `high` times the present distance from the joint, to `reach` [m]."""
+    """How far attachments may be moved: `low` to `high` times the present distance from the joint, to `reach` [m], and
+    no nearer to it than `least` [m] where they are farther now."""
 
     low: float = 0.25
     high: float = 4.0
     reach: AmountField = AmountField("length", np.inf)
+    least: AmountField = AmountField("length", LEAST)
 
     def __post_init__(self) -> None:
         if not 0 < self.low <= 1 <= self.high < np.inf:
@@ -57,7 +60,7 @@ class Travel:
         """(low, high) share of the present distance; an attachment on its joint stays there."""
         if ray.length == 0:
             return 1.0, 1.0
-        return self.low, max(1.0, min(self.high, self.reach / ray.length))
+        return max(self.low, min(1.0, self.least / ray.length)), max(1.0, min(self.high, self.reach / ray.length))
 
 
 class Movable:

@@ -20,10 +20,11 @@ from typing import Any
 import numpy as np
 
 from ...balance import Balance, check
-from ...clearance import Clearance, ClearanceConstraint
+from ...clearance import Clearance, ClearanceConstraint, within
 from ...clearance import clearance as judge_room
 from ...io import Source, loaded
 from ...kinematics import Tree, sample
+from ...model.arrays import Array
 from ...model.elements import lines
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
@@ -32,7 +33,7 @@ from ...model.validate import MAX_SAMPLES, whole_number
 from ..options import Options, option, takes
 from ..region import Given, given_regions
 from .levers import Levers
-from .ordinary_fit import FREE_LENGTHS, Fit, both
+from .ordinary_fit import FREE_LENGTHS, WIDTH, Fit, both
 
 ROOM_ROUNDS = 8  # of adding the poses with too little room
 WEIGHT = 10  # times that such a pose counts
@@ -96,7 +97,9 @@ class Ordinary:
             },
             "gain": self.gain if np.isfinite(self.gain) else None,
             "springs": springs,
-            "clearance": None if self.room is None else [room.to_dict()["least"] for room in self.room],
+            "clearance": None
+            if self.room is None
+            else [room.least_of_springs if np.isfinite(room.least_of_springs) else None for room in self.room],
         }
 
 
@@ -112,7 +115,8 @@ class OrdinaryOptions(Options):
             a ball as large as they are away from its origin.
         stiffness_factor: stiffness stays between its old value over this and times this.
         preload: the share of the free length that initial tension may take away; a rod in series may double it.
-        poses: random ones that the residual torque is minimised on, root mean square.
+        poses: random ones that the residual torque is minimised on, root mean square; within the ranges of the goal's
+            motions, where it has some.
         seed: of those poses.
     """
 
@@ -144,34 +148,40 @@ def ordinary(mechanism: Source, options: OrdinaryOptions) -> Ordinary:
     if clearance is not None and not 0 <= clearance < np.inf:
         raise InputError(Fault(("clearance",), f"must be at least 0 m, found {clearance:g}"))
     whole_number("poses", options.poses, 1, MAX_SAMPLES)
-    q = sample(Tree.of(mechanism), options.poses, options.seed)
+    moves = within(mechanism, mechanism.goal.poses.motions)  # as far as it has to balance and to have room
+    q = sample(Tree.of(moves), options.poses, options.seed)
     plain = mechanism.with_springs(
         replace(s, free_length=lengths.get(s.name, s.free_length)) for s in lines(mechanism, FREE_LENGTHS)
     )
 
+    last: list[Array] = []  # what the rounds of making room have come to: each starts from there too
     levers = Levers.of(mechanism, lines(mechanism, FREE_LENGTHS))
 
     def fitted(room: ClearanceConstraint | None) -> Mechanism:
         fit = Fit(mechanism, lengths, regions, q, levers if room is None else both(levers, room))
-        found = [fit.solve(x, stiffness_factor, preload) for x in fit.starts(stiffness_factor)]
-        return fit.mechanism_of(min(found, key=lambda one: one[1])[0])
+        starts = [*fit.starts(stiffness_factor), *last[-1:]]
+        found = [fit.solve(x, stiffness_factor, preload) for x in starts]
+        best = min(found, key=lambda one: one[1])[0]
+        last.extend([best.reshape(-1, WIDTH)] if room is not None else [])
+        return fit.mechanism_of(best)
 
     if clearance is None:
         return Ordinary(check(mechanism), check(plain), check(fitted(None)), lengths)
-    before, narrow = judge_room(mechanism), q
-    made, after, least = mechanism, before, -np.inf
+    before, narrow = judge_room(moves), q
+    made, after, least, aim = mechanism, before, -np.inf, clearance
     if options.free_length is not None:
         made = fitted(None)
-        after = judge_room(made)
+        after = judge_room(moves.with_springs(made.springs))
     for more in range(ROOM_ROUNDS + 1):
-        if after.least >= clearance:  # what is satisfied changes nothing
+        if after.least_of_springs >= clearance:  # what is satisfied changes nothing
             return Ordinary(check(mechanism), check(plain), check(made), lengths, (before, after))
         if more == ROOM_ROUNDS:
             break
-        made = fitted(ClearanceConstraint(mechanism, narrow, clearance))
-        after = judge_room(made)
-        least = max(least, after.least)
-        close = [gap.configuration for gap in after.gaps if gap.distance < clearance]
+        made = fitted(ClearanceConstraint(mechanism, narrow, aim))
+        after = judge_room(moves.with_springs(made.springs))
+        least = max(least, after.least_of_springs)
+        aim += max(0.0, clearance - after.least_of_springs)  # rows give way: what is missing is asked for on top
+        close = [gap.configuration for gap in after.of_springs if gap.distance < clearance]
         narrow = np.concatenate([narrow, *[np.repeat(at[None], WEIGHT, axis=0) for at in close]])
     raise InfeasibleError(
         f"no attachments were found that keep {1e3 * clearance:.4g} mm: the best come as near as {1e3 * least:.4g} mm; "
