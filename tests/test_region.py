@@ -110,3 +110,14 @@ def test_sets_on_blocks_of_different_shapes_are_one_batch():
     assert both.u.shape == (2, 2, 6)
     assert both.u[0].tolist() == [[0.5] * 5 + [0.0]] * 2
     assert both.u[1].tolist() == [[0.5] * 6] * 2
+
+
+def test_the_viewer_designs_again_within_the_regions_of_the_file():
+    from equipoise.viewer.model import Model
+
+    line = eq.Region.box((0.02, 0, 0), (0, 0, 0.15))
+    springs = [eq.Spring(body, "world", (0, 0, 0.3), body, (0.05, 0, 0), 100.0) for body in ("link2", "link3")]
+    model = Model(replace(ARM, attachments=(Attachment("world", line),), springs=tuple(springs)))
+    assert model.redesign()
+    assert not any(outside(line, p) for s in model.springs for body, p in s.ends if body == "world")
+    assert model.saved().attachments == model.file.attachments

@@ -191,7 +191,8 @@ class Model:
         kept = self.mechanism.with_springs(spring for spring in present if spring not in chosen)
         problem = Problem.of(kept, keep=bool(kept.springs))
         if chosen:
-            regions = _regions(kept, chosen)
+            said = {one.body for one in kept.attachments}  # where the file says where springs may go, it counts
+            regions = {body: region for body, region in _regions(kept, chosen).items() if body not in said}
             problem = problem.with_regions(regions).with_pairs((spring.body_a, spring.body_b) for spring in chosen)
         return solve(problem, springs=len(chosen) or SPRINGS, progress=progress)
 
