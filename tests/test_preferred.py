@@ -52,6 +52,15 @@ def test_a_design_has_its_springs_in_the_plane_of_the_motion():
         assert max(abs(p[1]) for s in design.mechanism.springs for p in (s.p_a, s.p_b)) < 1e-4
 
 
+def test_both_ends_are_in_one_plane_where_links_lie_side_by_side():
+    arm = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
+    aside = {"world": 0.0, "link2": 0.0, "link3": 0.03}  # [m] of each body's origin along the axes
+    joints = tuple(replace(j, xyz=(j.xyz[0], aside[j.child], 0.0)) for j in arm.joints)
+    for spring in eq.design(replace(arm, joints=joints), radius=0.1, shape="box").mechanism.springs:
+        heights = [p[1] + aside[body] for body, p in spring.ends]
+        assert heights[0] == pytest.approx(heights[1], abs=1e-9)
+
+
 @pytest.mark.parametrize("prefer", ["force", "energy"])
 def test_what_is_preferred_gets_less_and_the_balance_stays(prefer):
     arm = planar_arm([1.0, 0.8], [0.3, 0.25], [0.15, 0.1])
