@@ -47,6 +47,8 @@ def test_its_cone_is_the_ball():
     for u in block.project(rng.normal(0, 2, (20, 3))):
         first, *rest = cone.F @ block.part(u[None])[0]
         assert np.linalg.norm(rest) <= first * (1 + 1e-12)
+        first, *rest = cone.F @ block.part(1.01 * u[None] / np.linalg.norm(u))[0]
+        assert np.linalg.norm(rest) > first  # and no more than the ball
     larger, scale = block.enlarged(3.0)
     assert larger.radius == pytest.approx(0.6)
     assert scale.tolist() == [1, 3, 3, 3]
