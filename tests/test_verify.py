@@ -13,6 +13,7 @@ from certified import EXACT, certificate, document
 from tampered import holds, tampered
 
 import equipoise as eq
+from equipoise.proof import verify
 from equipoise.proof.certificate import Refused
 
 ALONE = Path(eq.__file__).parent / "proof" / "verify.py"
@@ -68,6 +69,31 @@ def test_what_is_no_certificate_is_refused(text, tmp_path):
     path = tmp_path / "cert.json"
     path.write_text(text)
     assert not accepted(path)
+
+
+@pytest.mark.parametrize("stiffness", ["1e12", "1e30"])
+def test_a_bound_for_stiffer_springs_is_refused(stiffness):
+    """What the shift costs is then more than the trial gives, and its square is large."""
+    found = document("bounded")
+    found["claims"]["bound"]["stiffness"] = stiffness
+    assert not accepted(found)
+
+
+def test_a_product_is_within_its_radius_at_every_corner():
+    one, two = (
+        (verify.UNIT, -verify.UNIT // 3, verify.UNIT // 50),
+        (2 * verify.UNIT, verify.UNIT // 7, verify.UNIT // 90),
+    )
+
+    def corners(a, b, r):
+        return [complex(a + x, b + y) / verify.UNIT for x in (-r, r) for y in (-r, r)]
+
+    for p, q in ((one, two), (two, one)):
+        ((a, b, r),) = (verify.Sum({(0,): p}) * verify.Sum({(0,): q})).values()
+        for x in corners(*p):
+            for y in corners(*q):
+                off = x * y - complex(a, b) / verify.UNIT
+                assert max(abs(off.real), abs(off.imag)) <= r / verify.UNIT * (1 + 1e-12)
 
 
 def test_numbers_are_plain():
