@@ -33,7 +33,8 @@ def save_worst_pose(mechanism: Mechanism, found: Clearance, path: str | os.PathL
     poses = tree.poses(gap.configuration[None])
     skeleton = Skeleton.of(mechanism)
     front, _ = choose(mechanism, skeleton)
-    side = View(front.normal, front.up, -front.right, front.vertical, planar=front.planar)
+    level = np.cross(front.vertical, -front.right)  # of the other side everything is seen level
+    side = View(level, front.vertical, -front.right, front.vertical, planar=front.planar)
     own = [i for i, name in enumerate(pairs.names) if name == (gap.spring, gap.other)]
     pair = own[int(pairs.distances(poses)[0, own].argmin())]
     ends = np.array(pairs.between(poses, pair))
