@@ -176,3 +176,24 @@ def test_design_with_springs_that_can_be_wound(run, tmp_path) -> None:
     code, _, err = run("design", tmp_path / "arm.yaml", "--max-length", "300mm")
     assert code == 2
     assert "--max-length: needs --realise" in err
+
+
+def test_a_torsion_spring_on_the_joint() -> None:
+    coil = Stock("T-1", "torsion", mass=0.02, torsional_rate=0.4, max_torque=2.0)
+    found = choose_parts(arm(), (coil, replace(coil, part="T-2", torsional_rate=0.15)), Choice(seconds=1.0), **WHERE)
+    (spring,), (use,) = found.mechanism.springs, found.balance.use
+    assert spring.kind == "torsion"
+    assert spring.part in ("T-1", "T-2")
+    assert min(use.force) * max(use.force) >= 0  # only ever wound up
+    assert max(map(abs, use.force)) <= 2.0 / 1.2 + 1e-9
+    # of all rests and both parts none leaves less, by the root mean square
+    q = np.linspace(-TURN, TURN, 121)
+    rms = {}
+    for k in (0.4, 0.15):
+        for rest in np.linspace(-15, 15, 3001):
+            moment = k * (q - rest)
+            if (moment.min() >= 0 or moment.max() <= 0) and np.abs(moment).max() <= 2.0 / 1.2:
+                rms[k, rest] = np.mean((M * 9.81 * L * np.cos(q) + moment) ** 2)
+    (k, rest), _ = min(rms.items(), key=lambda item: item[1])
+    assert spring.stiffness == k
+    assert spring.rest == pytest.approx(rest, abs=0.05)

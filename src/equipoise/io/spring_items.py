@@ -107,9 +107,10 @@ class TorsionItem(OnJointsItem):
     noun = "a torsion spring"
     stiffness: TorsionalStiffness
     rest: Angle = 0.0
+    part: Text = ""
 
     def element(self, folder: FilePath) -> Element:
-        return TorsionSpring(self.name, self.terms, self.stiffness, self.rest)
+        return TorsionSpring(self.name, self.terms, self.stiffness, self.rest, self.part)
 
 
 @cache

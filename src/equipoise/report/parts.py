@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from math import degrees, inf
 
 from rich.console import RenderableType
 from rich.text import Text
@@ -24,6 +24,9 @@ def chosen_lines(found: Chosen) -> Iterator[RenderableType]:
     springs = found.mechanism.springs[-len(found.parts) :]
     used = found.balance.use[-len(found.parts) :]
     for spring, use, part in zip(springs, used, found.parts, strict=True):
+        if part.kind == "torsion":
+            yield from _coil(spring, use.path, use.force, part)
+            continue
         own = spring.law
         cable = own.cable if isinstance(own, Extension) else 0.0
         low, high = (length - cable for length in use.path)
@@ -44,6 +47,19 @@ def chosen_lines(found: Chosen) -> Iterator[RenderableType]:
             f"regions {percent(found.ideal)}: reality costs {percent(max(0.0, found.left - found.ideal))}"
         )
     yield Text(_proof(found), style="bold")
+
+
+def _coil(spring: Element, path: tuple[float, float], force: tuple[float, float], part: Stock) -> Iterator[Text]:
+    """A torsion spring on its joint."""
+    most = max(map(abs, force))
+    wound = sorted(degrees(abs(angle - spring.rest)) for angle in path)
+    yield Text(f"{spring.name}: part {part.part}, torsion, on {spring.where}", style="bold")
+    yield Text(f"  {part.torsional_rate:.5g} N m/rad, {1000 * part.mass:.4g} g, price {part.price:.2f}")
+    yield Text(
+        f"  relaxed at {degrees(spring.rest):.4g} deg, wound up by {wound[0]:.1f} to {wound[1]:.1f} deg, "
+        f"{min(map(abs, force)):.4g} to {most:.4g} N m of {part.max_torque:.4g} N m: static margin "
+        f"{part.max_torque / most:.2f}, fatigue not judged"
+    )
 
 
 def _proof(found: Chosen) -> str:

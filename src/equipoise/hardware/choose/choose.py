@@ -12,7 +12,7 @@ from ..._version import __version__
 from ...balance import Balance, check
 from ...io import Source, loaded
 from ...model.arrays import Array
-from ...model.elements import Spring, lines
+from ...model.elements import Element, Spring, lines
 from ...model.errors import Fault, InfeasibleError, InputError, nearest
 from ...model.mechanism import Mechanism
 from ...model.progress import Progress, silent
@@ -21,8 +21,10 @@ from ...synthesis import Problem
 from ...synthesis.region import nearest_region
 from ..stock.part import Stock, said
 from .chosen import Choice, Chosen
+from .coils import Coil, coils
 from .field import Field
 from .mount import Mount
+from .polish import torque_size
 from .search import Search
 from .slots import MARGIN, Judge
 from .table import LINES, Table
@@ -68,23 +70,32 @@ def choose_parts(
     sites, own, ideal = _sites(problem, start, choice, field_)
     judge = Judge(field_, table, catalogue, _size(problem), MARGIN)
     search = Search(judge, sites, own, peak=peak, seed=choice.seed)
-    search.run(choice.seconds * (1 - SHORT), ideal, say)
-    if not search.best:
+    to_be_had = [part for part in catalogue if part.part not in choice.without]
+    turned = coils(field_, to_be_had, choice.limits, choice.parallel, choice.springs, peak)
+    rest = field_.load + sum((coil.torque for coil in turned), np.zeros_like(field_.load))
+    if len(table) or not turned:
+        search.run(choice.seconds * (1 - SHORT), ideal, say)
+    if not search.best and not turned:
         raise InfeasibleError(_why(catalogue, choice, table, sites))
     say("judging the design", 1.0)
-    made, balance, parts = _finished(search, problem, choice)
+    if turned and (size := torque_size(rest, len(field_.q), peak)) < search.left:
+        made, parts = _wound(turned, problem, choice)
+        balance, residual = check(made), size
+    else:
+        made, balance, parts = _finished(search, problem, choice)
+        residual = search.left
     whole = np.abs(field_.load).max() if peak else np.sqrt(np.sum(field_.load**2) / len(field_.q))
     free = field_.load + sum(ideal, np.zeros_like(field_.load))
     return Chosen(
         mechanism=made,
         balance=balance,
         objective=choice.objective,
-        residual=search.left,
+        residual=residual,
         unbalanced=float(whole),
         ideal=None if not given and not start else float(np.abs(free).max() / np.abs(field_.load).max()),
         parts=parts,
-        offered=len({int(p) for p in table.part}),
-        complete=search.complete,
+        offered=len({int(p) for p in table.part}) + sum(part.kind == "torsion" for part in to_be_had),
+        complete=search.complete or not len(table),
         polished=search.polished,
         history=tuple(search.history),
         limits=choice.limits,
@@ -157,7 +168,8 @@ def _finished(search: Search, problem: Problem, choice: Choice) -> tuple[Mechani
 
 
 def _built(search: Search, problem: Problem, choice: Choice) -> tuple[Mechanism, tuple[Stock, ...]]:
-    springs, parts = [], []
+    springs: list[Element] = []
+    parts: list[Stock] = []
     table, catalogue, field_ = search.judge.table, search.judge.catalogue, search.judge.field
     for i, slot in enumerate(search.best, start=1):
         part, count = catalogue[int(table.part[slot.row])], int(table.count[slot.row])
@@ -165,6 +177,18 @@ def _built(search: Search, problem: Problem, choice: Choice) -> tuple[Mechanism,
             name = f"spring {i}" + (f"{'abcdefgh'[j]}" if count > 1 else "")
             springs.append(slot.mount.element(field_, slot.x[:6], float(slot.x[6]), part, name))
             parts.append(part)
+    return _with(springs, parts, problem, choice), tuple(parts)
+
+
+def _wound(turned: Sequence[Coil], problem: Problem, choice: Choice) -> tuple[Mechanism, tuple[Stock, ...]]:
+    """With torsion springs on joints."""
+    elements = [(e, coil.part) for i, coil in enumerate(turned, start=1) for e in coil.elements(f"spring {i}")]
+    springs, parts = zip(*elements, strict=True)
+    return _with(springs, parts, problem, choice), parts
+
+
+def _with(springs: Sequence[Element], parts: Sequence[Stock], problem: Problem, choice: Choice) -> Mechanism:
+    """The mechanism with what was chosen, and all about the parts in its provenance."""
     kept = problem.mechanism.springs if problem.keep else ()
     provenance = {
         "program": f"equipoise {__version__}",
@@ -180,7 +204,7 @@ def _built(search: Search, problem: Problem, choice: Choice) -> tuple[Mechanism,
         "parts": [said(part) for part in dict.fromkeys(parts)],
     }
     made = problem.mechanism.with_springs((*kept, *springs))
-    return replace(made, provenance=provenance), tuple(parts)
+    return replace(made, provenance=provenance)
 
 
 def _size(problem: Problem) -> float:

@@ -56,7 +56,7 @@ class Chosen:
     @property
     def first(self) -> float:
         """[s] until there was an answer."""
-        return self.history[0].seconds
+        return self.history[0].seconds if self.history else 0.0
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``equipoise stock --json``, without the balance."""
@@ -74,7 +74,7 @@ class Chosen:
             "history": [asdict(step) for step in self.history],
             "cost": sum(part.mass for part in self.parts),
             "springs": [
-                {"name": element.name, "realisation": element.realisation, "stock": said(part)}
+                {"name": element.name, "realisation": getattr(element, "realisation", ""), "stock": said(part)}
                 for element, part in zip(self.mechanism.springs[-len(self.parts) :], self.parts, strict=True)
             ],
         }

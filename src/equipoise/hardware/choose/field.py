@@ -10,7 +10,7 @@ from ...energy.reference import Reference
 from ...kinematics import Tree, sample
 from ...kinematics.sampling import bounds, inside
 from ...model.arrays import Array
-from ...model.elements import LineElement
+from ...model.elements import Element
 from ...model.mechanism import Mechanism
 
 CORNERED = 6  # coordinates, at most, whose box has all its corners among the poses
@@ -70,8 +70,8 @@ class Field:
         falls = self._falls[body]
         return p @ falls[:, :3].T + falls[:, 3]
 
-    def element(self, element: LineElement) -> tuple[Array, Array]:
-        """(N * n,) torque of a pull of 1 N, times `scale`, and (N,) length [m] of an element of any path."""
+    def element(self, element: Element) -> tuple[Array, Array]:
+        """(N * n,) torque of a unit force, times `scale`, and (N,) path [m or rad] of an element."""
         arms = element.lever_arms(self.tree, self.poses, self.velocities)
         return (arms * self.scale).ravel(), element.path(self.tree, self.poses)
 

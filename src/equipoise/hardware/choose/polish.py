@@ -85,8 +85,12 @@ def polish(
 
 def left(judge: Judge, slots: Sequence[Slot], load: Array, peak: bool) -> float:
     """The torque that is left [N m, scaled]: the largest, or the root mean square over poses of all coordinates."""
-    residual = load + sum(judge.torque(slot) for slot in slots)
-    return float(np.abs(residual).max()) if peak else float(np.sqrt(np.sum(residual**2) / len(judge.field.q)))
+    return torque_size(load + sum(judge.torque(slot) for slot in slots), len(judge.field.q), peak)
+
+
+def torque_size(torque: Array, poses: int, peak: bool) -> float:
+    """Of torques (N * n,): the largest, or the root mean square over the poses of all coordinates together."""
+    return float(np.abs(torque).max()) if peak else float(np.sqrt(np.sum(torque**2) / poses))
 
 
 def _left(judge: Judge, slots: Sequence[Slot], load: Array, peak: bool) -> float:

@@ -115,6 +115,8 @@ def _held(balance: Balance, i: int, spring: Element, use: SpringUse, part: Stock
             static = part.max_force / most if most else inf
             top, bottom = endurance(part, limits)
             fatigue = limits.fatigue / (top * most - bottom * least) if top else None
+        elif part.kind == "torsion":
+            static = part.max_torque / most if most else inf
     elif isinstance(spring, TorsionSpring):
         order, static, fatigue, faults = _coiled(spring, use, least, most, options)
     elif isinstance(law, (Extension, Compression)):

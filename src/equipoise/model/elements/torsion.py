@@ -21,12 +21,14 @@ class TorsionSpring(OnJoints):
         joints: (name, ratio) of each revolute joint.
         stiffness: [N m/rad], positive.
         rest: the angle at which it exerts nothing [rad].
+        part: what it is ordered by.
     """
 
     name: str
     joints: tuple[tuple[str, float], ...]
     stiffness: float
     rest: float = 0.0
+    part: str = ""
 
     @property
     def law(self) -> Torsional:
@@ -34,14 +36,15 @@ class TorsionSpring(OnJoints):
 
     @property
     def keys(self) -> dict[str, Any]:
-        return {"joints": dict(self.joints), "stiffness": self.stiffness, "rest": self.rest}
+        own = {"part": self.part} if self.part else {}
+        return {"joints": dict(self.joints), "stiffness": self.stiffness, "rest": self.rest, **own}
 
     def sentence(self, path: Range, force: Range) -> str:
         low, high = (degrees(angle) for angle in path)
         use = f"{low:.1f} to {high:.1f} deg, up to {max(map(abs, force)):.3g} N m"
-        return (
-            f"{self.name}: {self.stiffness:.5g} N m/rad on {self.where}, relaxed at {degrees(self.rest):.4g} deg, {use}"
-        )
+        rest = f"relaxed at {degrees(self.rest):.4g} deg"
+        part = f", part {self.part}" if self.part else ""
+        return f"{self.name}: {self.stiffness:.5g} N m/rad on {self.where}, {rest}, {use}{part}"
 
     def scaled(self, factor: float) -> TorsionSpring:
         return replace(self, stiffness=factor * self.stiffness)
