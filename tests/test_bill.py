@@ -12,6 +12,7 @@ from robots import lee_chen, lee_chen_springs
 import equipoise as eq
 from equipoise.hardware import Envelope, Options
 from equipoise.hardware.realise.bill import bill
+from equipoise.report import drawing
 from equipoise.report.drawing import Drawing, save_drawing
 from equipoise.report.sheet import sheet
 from equipoise.report.style import clean
@@ -191,7 +192,7 @@ def test_dxf(tmp_path) -> None:
 
 
 def test_dxf_without_ezdxf_says_what_to_install(run, arm, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("equipoise.report.drawing.find_spec", lambda name: None)
+    monkeypatch.setattr(drawing, "find_spec", lambda name: None)
     code, _, err = run("hardware", arm, *ROOM, "--sheet", tmp_path / "springs.dxf")
     assert code == 2
     assert "pip install 'equipoise[cad]'" in err

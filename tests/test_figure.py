@@ -15,7 +15,7 @@ from equipoise.io import files
 from equipoise.kinematics import Tree, sample
 from equipoise.model.coordinate import Coordinate
 from equipoise.model.errors import InputError
-from equipoise.report import loads, style
+from equipoise.report import figure, loads, style
 from equipoise.report.arm import window, zigzag
 from equipoise.report.figure import save_figure
 from equipoise.report.poses import choose
@@ -191,7 +191,7 @@ def test_a_small_residual_gets_a_logarithmic_axis_and_none_a_word(tmp_path, shar
 
 def test_the_given_balance_and_title_are_used(tmp_path, monkeypatch):
     balance = eq.check(PENDULUM)
-    monkeypatch.setattr("equipoise.report.figure.check", None)
+    monkeypatch.setattr(figure, "check", None)
     save_figure(PENDULUM, tmp_path / "arm.svg", balance=balance, title="Figure 1 <&> $x$")
     assert "Figure 1 <&> $x$" in texts(tmp_path / "arm.svg")
     assert "one-link arm" not in texts(tmp_path / "arm.svg")

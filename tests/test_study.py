@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
+from equipoise.study import cluster
 from equipoise.study.dataset import Dataset
 
 PENDULUM = Path(__file__).parents[1] / "examples" / "mechanisms" / "pendulum.yaml"
@@ -114,7 +115,7 @@ def test_from_the_file_to_rows_a_plot_and_a_design(tmp_path, run):
 def test_mistakes(tmp_path, monkeypatch, run, arguments, message):
     write(tmp_path, 0, 3)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("equipoise.study.cluster.ANSWER", 0.3)
+    monkeypatch.setattr(cluster, "ANSWER", 0.3)
     code, _, err = run("study", *arguments)
     assert code == 2
     assert message in err
