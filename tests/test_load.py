@@ -12,6 +12,7 @@ from equipoise.kinematics import Tree, sample
 from equipoise.model.errors import InfeasibleError, InputError
 from equipoise.synthesis.convex.least_squares_form import build
 from equipoise.synthesis.convex.semidefinite import least_rms
+from equipoise.synthesis.load import cone
 
 ARM = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
 LIMITED = replace(ARM, joints=tuple(replace(j, range=(-0.5, 2.0)) for j in ARM.joints))
@@ -121,3 +122,16 @@ def test_refusals(loads, message):
 def test_a_weight_is_more_than_nothing():
     with pytest.raises(InputError, match="weight: must be a finite number of more than 0, found 0"):
         eq.Load("a", 0.0)
+
+
+@pytest.mark.parametrize("tilt", [0.1, 0.5, 1.5])
+def test_few_directions_have_the_moments_of_the_cone(tilt):
+    """Of a direction evenly spread over a cap its height h is even from cos(tilt) to 1 (Archimedes)."""
+    g = np.array([1.0, 2.0, -9.0])
+    axis, c = g / np.linalg.norm(g), np.cos(tilt)
+    every = np.array(cone(g, tilt)) / np.linalg.norm(g)
+    along = (1 + c + c**2) / 3  # mean of h^2
+    across = (1 - along) / 2
+    assert every.mean(axis=0) == pytest.approx((1 + c) / 2 * axis, abs=1e-12)
+    expected = across * np.eye(3) + (along - across) * np.outer(axis, axis)
+    assert every.T @ every / len(every) == pytest.approx(expected, abs=1e-12)
