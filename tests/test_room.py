@@ -103,7 +103,7 @@ def test_without_geometry_nothing_is_called_clear(run, tmp_path):
     assert "NOT JUDGED against the links" in out
 
 
-@pytest.mark.parametrize("suffix", [".svg", ".png"])
+@pytest.mark.parametrize("suffix", [".svg"])
 def test_the_closest_pose_is_drawn(run, tmp_path, suffix):
     shape = Shape("box", "stand", "box", (0.1, 0.1, 0.1), (0.1, 0.1, 0.1), (0.1, 0.2, 0.3))
     eq.save(replace(zoo.with_post(), shapes=(shape,)), tmp_path / "m.yaml")

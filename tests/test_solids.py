@@ -117,9 +117,10 @@ def test_a_whole_mechanism_as_mujoco_measures_it(seeds):
                     assert distance == pytest.approx(measured, abs=2e-5)
                 else:
                     assert distance < 2e-3
-                    assert measured < 2e-3
+                    assert measured < 5e-3  # its depth of an axis through a box has been 2.6 mm above 0
 
 
+@pytest.mark.slow(reason="a climb with six solids")
 def test_the_least_is_that_of_a_dense_scan():
     m = scene(np.random.default_rng(5))
     found = clearance(m, samples=100)
