@@ -95,14 +95,12 @@ def handles(mechanism: Mechanism) -> Iterator[Handle]:
     """All that a measurement may tell; a preload is the force at no length, or the torque at no angle."""
     for spring in mechanism.springs:
         if isinstance(spring, (Spring, TorsionSpring)):
-            line = isinstance(spring, Spring)
             rest = spring.free_length if isinstance(spring, Spring) else spring.rest
             most = 0.05 * spring.stiffness  # 50 mm, or 0.05 rad: what a preload is compared with
-            yield Handle(f"rate of {spring.name}", "rates", "N/m" if line else "N m/rad", spring.stiffness,
-                         spring.stiffness)  # fmt: skip
-            yield Handle(
-                f"preload of {spring.name}", "preloads", "N" if line else "N m", 0.0 - spring.stiffness * rest, most
-            )
+            yield Handle(f"rate of {spring.name}", "rates", f"{spring.force_unit}/{spring.path_unit}",
+                         spring.stiffness, spring.stiffness)  # fmt: skip
+            tight = 0.0 - spring.stiffness * rest
+            yield Handle(f"preload of {spring.name}", "preloads", spring.force_unit, tight, most)
         else:
             yield Handle(f"strength of {spring.name}", "rates", "of the file's", 1.0, 1.0)
     for one in (*mechanism.bodies, *mechanism.masses):
