@@ -6,7 +6,6 @@ own origin): one line to the margin for each place, with the distance in mm (ord
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from datetime import datetime
 from importlib.util import find_spec
 from math import cos, log10, pi, sin
@@ -15,7 +14,7 @@ import numpy as np
 
 from .._version import __version__
 from ..kinematics import Tree
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.errors import InputError
 from ..model.mechanism import WORLD, Mechanism
 from .drawing import LARGE, NORMAL, SMALL, THICK, THIN, Drawing, Label
@@ -29,7 +28,7 @@ AXES = "xyz"
 MM = 1000.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Place:
     """A place on a body: what is fixed there, and where [mm]."""
 

@@ -18,7 +18,7 @@ import numpy as np
 from ..energy.evaluate import Potential
 from ..io import Source, loaded
 from ..kinematics import Tree, sample
-from ..model.arrays import Array
+from ..model.arrays import Array, frozen
 from ..model.elements import Spring, TorsionSpring
 from ..model.errors import Fault, InputError, nearest
 from ..model.mechanism import Mechanism
@@ -175,7 +175,7 @@ class Regression:
         return mechanism
 
 
-@dataclass(frozen=True)
+@frozen
 class Identified(Shown):
     """What a measurement tells.
 

@@ -7,11 +7,10 @@ is only ever wound up, and not so far that it is wound too much.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.elements import TorsionSpring
 from ..sizing.limits import Limits
 from ..stock.part import Stock
@@ -21,7 +20,7 @@ from .polish import torque_size
 BETTER = 0.99  # of what was left: less is worth no further coil
 
 
-@dataclass(frozen=True)
+@frozen
 class Coil:
     """A part, `count` side by side, on a joint; `torque` (N * n,) is what all of them do."""
 

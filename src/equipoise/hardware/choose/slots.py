@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,7 +31,7 @@ class Slot:
     x: Array
 
 
-@dataclass(frozen=True)
+@frozen
 class Doing:
     """What G variants of a spring do: (G, N * n) torque, (G, N) its length [m], (G, c) how far limits are passed."""
 

@@ -6,12 +6,10 @@ A spring about one hinge can be turned about it: its end on the link goes where 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...kinematics import Poses, Tree
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.rotation import about
 from .spring_block import SpringBlock
 
@@ -19,7 +17,7 @@ TURNS = 8  # poses that tell whether axes are parallel
 PARALLEL = 1e-9
 
 
-@dataclass(frozen=True)
+@frozen
 class Plane:
     """The normal of all axes between two bodies, in the frame of each, and how far along it B's origin is [m]."""
 

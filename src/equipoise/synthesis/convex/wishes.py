@@ -7,13 +7,12 @@ axes where there is one, little force, short, in line with the mass centre.
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
 
 from ...kinematics import Poses, Tree, sample
-from ...model.arrays import Array
+from ...model.arrays import Array, frozen
 from ...model.region import Region
 from .drawn import Plane, drawn, towards_mass
 from .least_squares_form import LeastSquaresForm
@@ -36,7 +35,7 @@ SIDES = 2  # of them that count on one side only
 ROWS = len(LINEAR) + 4
 
 
-@dataclass(frozen=True)
+@frozen
 class _Place:
     """Of the springs of one block: linear rows (LINEAR, side), stretch (POSES, 3, side), mean energy (unknowns,)."""
 
