@@ -96,7 +96,7 @@ def test_a_file_is_saved_as_another(tmp_path: Path, arm: eq.Mechanism) -> None:
         (lambda: Region.box("80 mm"), lambda: Region.box(0.08)),
         (
             lambda: Problem.of(pendulum(), regions={"arm": "80 mm"}, shape="box").regions["arm"],
-            lambda: Region.box(0.08),
+            lambda: (Region.box(0.08),),
         ),
         (
             lambda: Payload.at(pendulum(), ("500 g", "2 kg"), "arm", ("60 cm", 0, 0)),

@@ -33,7 +33,7 @@ def makers() -> set[str]:
     for tree in map(ast.parse, (path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py"))):
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef) and node.returns is not None:
-                found |= {node.name} if ast.unparse(node.returns) == "InputError" else set()
+                found |= {node.name} if ast.unparse(node.returns) in ("InputError", "EquipoiseError") else set()
     return found
 
 

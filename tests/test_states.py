@@ -118,8 +118,6 @@ def test_refusals():
         eq.design(limited, goal=Goal(poses=Where((replace(SWING, values=((0, 0), (0.1, 0.7), (0, 0), (0, 0))),))))
     with pytest.raises(InputError, match="exact: is about all poses, and the goal gives some"):
         eq.design(ARM, goal=Goal(poses=Where((SWING,))), exact=True)
-    with pytest.raises(InputError, match="a motion does not go with the weights on"):
-        eq.design(ARM, goal=Goal(poses=Where((SWING,))), counterweights=0.1)
 
 
 def test_a_motion_on_the_command_line(run, tmp_path):
