@@ -279,7 +279,8 @@ def controls() -> Iterator[Case]:
         arm = {"a.yaml": YAML.format(**GOOD)}
         row = f"{letter}[31mred,extension,1,1,1,1,1,1\n"
         head = "part,kind,rate,max_force,free_length,outer_diameter,wire_diameter,mass\n"
-        yield Case(f"part with {what}", {**arm, "l.csv": head + row}, ("stock", "a.yaml", "l.csv"))
+        if not letter.isspace():  # a row that begins on the next line is a list like any other
+            yield Case(f"part with {what}", {**arm, "l.csv": head + row}, ("stock", "a.yaml", "l.csv"))
         yield Case(
             f"heading with {what}",
             {**arm, "m.csv": f"time,{letter}[31m\n"},

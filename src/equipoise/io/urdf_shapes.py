@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.arrays import vec3
 from ..model.elements import Vec3
-from ..model.errors import Fault
+from ..model.errors import Fault, InputError
 from ..model.mechanism import Capsule, Mechanism, Shape
 from ..model.names import Names
 from ..model.rotation import from_rpy
@@ -87,7 +87,7 @@ def _numbers(element: XmlElement | None, key: str, default: Vec3 | None = None) 
         return default
     values = [_finite(word, key) for word in (text or "").split()]
     if len(values) != 3:
-        raise ValueError(f"{key}: expected 3 numbers, found '{text or ''}'")
+        raise InputError(f"{key}: expected 3 numbers, found '{text or ''}'")
     return vec3(np.array(values))
 
 
@@ -101,5 +101,5 @@ def _finite(word: str, key: str) -> float:
     except ValueError:
         value = np.nan
     if not isfinite(value):
-        raise ValueError(f"{key}: expected a number, found '{word}'")
+        raise InputError(f"{key}: expected a number, found '{word}'")
     return value

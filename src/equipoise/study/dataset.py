@@ -87,11 +87,12 @@ class Dataset:
         try:
             m = json.loads(read_text(path))
             found = Dataset(folder, m["hash"], m["designs"], m["columns"], m["study"])
-            if Plan.of(found.document).hash != found.hash:
-                raise ValueError
+            whole = Plan.of(found.document).hash == found.hash
         except (ValueError, KeyError, TypeError):
+            whole, found = False, None
+        if found is None or not whole:
             message = "is spoilt: take it from a copy, or run the study anew in another folder"
-            raise InputError(Fault((), message, file=str(path))) from None
+            raise InputError(Fault((), message, file=str(path)))
         return found
 
     @contextmanager
