@@ -226,7 +226,7 @@ def test_a_design_takes_them_as_a_given_load_and_shows_them(tmp_path: Path, run)
 
 @pytest.mark.parametrize(
     "command",
-    [("tolerance",), ("clearance",), ("adjust", "--payload", "0,1", "--payload-on", "arm")],
+    [("tolerance",), ("adjust", "--payload", "0,1", "--payload-on", "arm")],
     ids=lambda command: command[0],
 )
 def test_what_cannot_serve_one_says_so_by_name(tmp_path: Path, run, command: tuple[str, ...]) -> None:

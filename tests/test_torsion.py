@@ -214,7 +214,6 @@ def test_what_cannot_serve_it_says_so_by_name(hinge: Path, tmp_path: Path, run) 
     commands = (
         ("stock", hinge, stock),
         ("tolerance", hinge),
-        ("clearance", hinge),
         ("adjust", hinge, "--payload", "0,1", "--payload-on", "arm", "--payload-at", "0.1,0,0"),
     )
     for command in commands:
@@ -222,6 +221,18 @@ def test_what_cannot_serve_it_says_so_by_name(hinge: Path, tmp_path: Path, run) 
         assert code == 2, command
         assert "'coil' is a torsion spring" in " ".join(err.split()), command
         assert command[0] in err
+
+
+def test_where_every_spring_is_on_a_joint_there_is_no_room_to_judge(hinge: Path, run) -> None:
+    code, out, _ = run("clearance", hinge, "--samples", 50)
+    assert code == 1  # nothing says how large the links are
+    text = " ".join(out.split())
+    assert "NOTHING TO JUDGE: no spring or weight has anything to come close to" in text
+    assert "not judged: coil (a torsion spring: no size is known)" in text
+    code, out, _ = run("clearance", hinge, "--samples", 50, "--json")
+    found = json.loads(out)
+    assert (found["least"], found["gaps"], found["springs"]) == (None, [], [])
+    assert eq.clearance(hinge, samples=50).nearest == (np.inf,) * 50
 
 
 def test_it_is_drawn_and_designed_around(hinge: Path, tmp_path: Path, run) -> None:

@@ -107,6 +107,8 @@ class Pairs:
 
     def points(self, poses: Poses, ends: Array) -> Array:
         """(N, parts, 2, 3) the ends in the world [m]."""
+        if not self.bodies:
+            return np.empty((len(poses.p), 0, 2, 3))
         sides = [
             np.stack([poses.point(body[e], at[e]) for body, at in zip(self.bodies, ends, strict=True)], axis=1)
             for e in (0, 1)

@@ -28,6 +28,8 @@ def clearance_lines(mechanism: Mechanism, found: Clearance, limit: float) -> Ite
             f"{verdict}: least distance {1e3 * found.least:.4g} mm, {first.spring} to {first.other}",
             style="bold green" if found.clear(limit) else "bold yellow",
         )
+    else:
+        yield Text("NOTHING TO JUDGE: no spring or weight has anything to come close to", style="bold yellow")
     if not found.links:
         yield Text(NOT_JUDGED, style="bold yellow")
     for name in found.left_out:
