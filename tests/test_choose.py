@@ -1,5 +1,6 @@
 """Parts chosen with their attachments: closed forms against the elements, the whole against an exhaustive search."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -197,3 +198,25 @@ def test_a_torsion_spring_on_the_joint() -> None:
     (k, rest), _ = min(rms.items(), key=lambda item: item[1])
     assert spring.stiffness == k
     assert spring.rest == pytest.approx(rest, abs=0.05)
+
+
+def test_what_is_asked_holds_between_the_poses_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four poses of a full turn: the spring is longest and shortest 30 degrees away from them."""
+    monkeypatch.setattr(sys.modules[Field.__module__], "ALONG", 4)
+    whole = replace(arm(), joints=(replace(arm().joints[0], range=(-np.pi, np.pi)),))
+    limits = Limits(safety=3.0)
+    found = choose_parts(whole, PARTS[700::20], Choice(limits=limits, seconds=0.6), **WHERE)
+    (part,), (use,) = found.parts, found.balance.use
+    top, bottom = endurance(part, limits)
+    assert part.max_force / use.force[1] >= limits.safety - 1e-6
+    assert top * use.force[1] - bottom * use.force[0] <= 1 + 1e-6
+
+
+def test_a_spring_that_stays_may_pass_its_own_limits() -> None:
+    strut = eq.LineElement(
+        "strut", "world", (0.0, 0.0, -0.3), "arm", (0.1, 0.0, 0.0), eq.laws.Gas(1.0, 0.33, 0.3, progression=1.3)
+    )
+    kept = arm().with_springs([strut])
+    found = choose_parts(kept, PARTS[700::40], Choice(seconds=0.5), keep=True, **WHERE)
+    assert {name for name, _ in found.balance.passed} == {"strut"}
+    assert len(found.parts) == len(found.mechanism.springs) - 1

@@ -30,8 +30,10 @@ from .slots import MARGIN, Judge
 from .table import LINES, Table
 
 POSES = 96  # random ones that a choice is judged on, of a mechanism with several coordinates
-JUDGINGS = 4  # of the finished mechanism, with more and more distance from the limits
-WIDER = 5.0
+JUDGINGS = 5  # of the finished mechanism, with more and more distance from the limits
+ANSWERS = 3  # the best ones, that are judged until one keeps its limits
+KEPT = 1e-9  # of a limit: rounding
+MORE, AIM = 1.5, 0.2  # times what a limit was passed by, to keep from it; of that, to aim for besides
 SHORT = 0.15  # of the time, for what follows the search
 
 
@@ -153,18 +155,48 @@ def _sites(
 
 
 def _finished(search: Search, problem: Problem, choice: Choice) -> tuple[Mechanism, Balance, tuple[Stock, ...]]:
-    """The mechanism with the springs, judged in all poses; where one passes a limit there, it keeps farther from it."""
-    from .polish import polish
+    """The mechanism with the springs, judged at the extremes of all poses.
 
-    judge = search.judge
-    for _ in range(JUDGINGS):
-        made, parts = _built(search, problem, choice)
-        balance = check(made)
-        if not balance.passed:
-            break
-        judge.margin *= WIDER
-        search.best = polish(judge, search.best, search.load, peak=search.peak)
-    return made, balance, parts
+    Where one passes a limit there, it keeps farther from it; an answer that cannot gives way to the one before it.
+
+    Raises:
+        InfeasibleError: none keeps what was asked.
+    """
+    from .polish import left, polish
+
+    judge, worst = search.judge, np.inf
+    for answer in search.answers[: -1 - ANSWERS : -1]:
+        search.best, judge.margin = answer, MARGIN
+        for _ in range(JUDGINGS):
+            made, parts = _built(search, problem, choice)
+            balance = check(made)
+            over = _over(search, balance, choice)
+            if over <= KEPT:
+                search.left = left(judge, search.best, search.load, search.peak)
+                return made, balance, parts
+            worst = min(worst, over)
+            judge.margin += max(MORE * over, judge.margin)
+            aim = AIM * judge.margin
+            search.best = polish(judge, search.best, search.load, peak=search.peak, aim=aim)
+    raise InfeasibleError(
+        f"of the parts that fit at the poses looked at, none keeps a static margin of {choice.limits.safety:g} and a "
+        f"fatigue margin of {choice.limits.fatigue:g} between them: the best passes a limit by {100 * worst:.2g} % of "
+        "its range. What would help: larger regions (--radius, --region), or more time (--seconds)"
+    )
+
+
+def _over(search: Search, balance: Balance, choice: Choice) -> float:
+    """The largest share by which a limit of the best springs is passed at the extremes; to be slack is none."""
+    judge, over, i = search.judge, 0.0, len(balance.mechanism.springs)
+    i -= int(sum(judge.table.count[slot.row] for slot in search.best))
+    for slot in search.best:
+        law, path = balance.mechanism.springs[i].law, np.array(balance.use[i].path)
+        part = judge.catalogue[int(judge.table.part[slot.row])]
+        short, long, worn = judge.limits(slot.row, path[None] - getattr(law, "cable", 0.0), 0.0)[0].tolist()
+        slack = part.kind == "extension", part.kind == "compression" and part.free_length <= choice.max_length
+        over = max(over, worn, *(passed for passed, loose in zip((short, long), slack, strict=True) if not loose))
+        i += int(judge.table.count[slot.row])
+    return over
 
 
 def _built(search: Search, problem: Problem, choice: Choice) -> tuple[Mechanism, tuple[Stock, ...]]:

@@ -17,13 +17,20 @@ EVALUATIONS = 60
 
 
 def polish(
-    judge: Judge, slots: Sequence[Slot], load: Array, *, peak: bool = False, rounds: int = EVALUATIONS
+    judge: Judge,
+    slots: Sequence[Slot],
+    load: Array,
+    *,
+    peak: bool = False,
+    rounds: int = EVALUATIONS,
+    aim: float = 0.0,
 ) -> tuple[Slot, ...]:
     """A local minimum of the root mean square torque, or of the largest.
 
     Args:
         load: (N * n,) torque besides these springs.
         peak: whether the largest counts: poses where much is left count more, again and again (Lawson's method).
+        aim: how much more than the margin that they must keep is aimed at.
     """
     from scipy.optimize import least_squares
 
@@ -49,7 +56,7 @@ def polish(
             n = len(_free(slot))
             own = np.concatenate([np.zeros((1, n)), STEP * np.eye(n)]) if slopes else np.zeros((1, n))
             own = slot.x + np.pad(own, ((0, 0), (0, 7 - n)))
-            doing = judge.doing(slot.mount, slot.row, own)
+            doing = judge.doing(slot.mount, slot.row, own, aim)
             over = STIFF * np.maximum(doing.passed, 0.0)
             torque = torque + doing.torque[0]
             limits.append(over)

@@ -40,7 +40,7 @@ class Search:
     Attributes:
         best: the slots so far; empty before the first answer.
         left: what they leave [N m, scaled]: the largest, or root mean square.
-        history: each better answer.
+        history: each better answer. answers: their slots, the best last.
         polished: places from which some part was polished.
         complete: whether every part that fits was polished from several places, and nothing better came of it.
     """
@@ -55,6 +55,7 @@ class Search:
         self.best: tuple[Slot, ...] = ()
         self.left = np.inf
         self.history: list[Progressed] = []
+        self.answers: list[tuple[Slot, ...]] = []
         self.polished, self.complete, self.fit = 0, False, 1
 
     def run(self, seconds: float, ideal: Sequence[Array], progress: Progress | None = None) -> None:
@@ -131,6 +132,7 @@ class Search:
         value = left(self.judge, moved, self.load, self.peak)
         if value < self.left:
             self.best, self.left = moved, value
+            self.answers.append(moved)
             self.rms = left(self.judge, moved, self.load, False)
             self.history.append(Progressed(self._time(), value))
         share = self.left / (float(np.abs(self.load).max()) or 1.0)

@@ -46,10 +46,10 @@ class Judge:
     def __init__(self, field: Field, table: Table, catalogue: tuple[Stock, ...], longest: float, margin: float) -> None:
         self.field, self.table, self.catalogue, self.longest, self.margin = field, table, catalogue, longest, margin
 
-    def doing(self, mount: Mount, row: int, x: Array) -> Doing:
-        """Of variants (G, 7) of a spring."""
+    def doing(self, mount: Mount, row: int, x: Array, more: float = 0.0) -> Doing:
+        """Of variants (G, 7) of a spring, which are to keep `more` than the margin."""
         t, field = self.table, self.field
-        k, n = float(t.k[row]), float(t.count[row])
+        k = float(t.k[row])
         p_a, p_b = mount.points(x)
         outside = [_outside(x[:, :3], mount.region_a.shape), _outside(x[:, 3:6], mount.region_b.shape)]
         passed = [np.stack(outside, axis=1)]
@@ -63,7 +63,7 @@ class Judge:
             length = s + (float(t.body[row]) - x[:, 6:7] if mount.cabled else 0.0)
             c = k * x[:, 6] - float(t.tension[row]) if mount.cabled else np.full(len(x), float(t.c[row]))
             torque = k * K - c[:, None] * C
-        passed.append(self._limits(row, length, n))
+        passed.append(self.limits(row, length, self.margin + more))
         if mount.cabled:
             e, room = mount.behind(field, p_a, p_b)
             within = length.max(axis=1) + 4 * mount.radius
@@ -82,14 +82,18 @@ class Judge:
         per = len(arms) // len(path)
         return arms * np.repeat(pull, per), stretch + float(t.body[row])
 
-    def _limits(self, row: int, length: Array, n: float) -> Array:
-        """(G, 3) shares by which it is too short, too long, or will break in the end; below 0 within its limits."""
+    def limits(self, row: int, length: Array, margin: float) -> Array:
+        """(G, 3) shares by which it is too short, too long, or will break in the end; below 0 within its limits.
+
+        Args:
+            length: (G, N) [m] over the poses, without its cable. margin: what it is to keep from its limits.
+        """
         t = self.table
         low, high = float(t.low[row]), float(t.high[row])
-        keep = self.margin * (high - low)
+        keep = margin * (high - low)
         short, long = length.min(axis=1), length.max(axis=1)
         ends = np.abs(float(t.k[row]) * np.stack([short, long]) - float(t.c[row]))
-        worn = float(t.top[row]) * ends.max(axis=0) - float(t.bottom[row]) * ends.min(axis=0) - 1 + self.margin
+        worn = float(t.top[row]) * ends.max(axis=0) - float(t.bottom[row]) * ends.min(axis=0) - 1 + margin
         width = high - low
         return np.stack([(low + keep - short) / width, (long - high + keep) / width, worn], axis=1)
 
