@@ -92,9 +92,9 @@ def test_brute_force_finds_some_and_misses_some() -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("seed", some((0, 7), here=(7,)))  # of 7, one set is only just impossible
-def test_two_thousand_springs(seed: int) -> None:
-    found = choose(eq.check(lee_chen_springs()), made_up_catalogue(2000, seed), seconds=600)
+@pytest.mark.parametrize(("seed", "count"), some(((0, 2000), (7, 2000)), here=((7, 300),)))
+def test_two_thousand_springs(seed: int, count: int) -> None:  # of seed 7, one set is only just impossible
+    found = choose(eq.check(lee_chen_springs()), made_up_catalogue(count, seed), seconds=600)
     assert found.proven
     assert found.gap < 1e-9
     assert eq.check(found.mechanism).exact

@@ -168,7 +168,7 @@ def test_the_arm_of_lin2010_with_its_ball_joints():
     tree = Tree.of(m)
     assert isinstance(tree, Linkage)
     assert (tree.mobility.numerical, len(m.loops)) == (11, 5)  # 6 active, 5 idle
-    q = sample(tree, 50, 3)
+    q = sample(tree, 15, 3)
     with_springs, without, error = held(m, q)
     assert np.abs(with_springs).max() < 1e-9 * np.abs(without).max()
     assert error < 1e-12
