@@ -65,7 +65,7 @@ def changed(node: ast.AST) -> Iterator[ast.AST]:
             yield other
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.Not)):
         yield node.operand
-    elif isinstance(node, ast.Constant) and type(node.value) in (int, float, bool):
+    elif isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
         yield ast.copy_location(ast.Constant(not node.value if isinstance(node.value, bool) else node.value + 1), node)
     elif isinstance(node, ast.IfExp):
         yield node.body

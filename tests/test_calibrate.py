@@ -26,7 +26,7 @@ LAMP = planar_arm([0.4, 0.3, 0.5], [0.4, 0.4, 0.1], [0.2, 0.2, 0.05]).with_sprin
     eq.Spring(f"spring {i}", a, p, b, r, 100.0 + i, free_length=0.02) for i, (a, p, b, r) in enumerate(ENDS, 1)
 )
 NAMES = tuple(LAMP.coordinates)
-REACHED = {NAMES[0]: 0.4, NAMES[1]: -0.3, NAMES[2]: 0.3}
+REACHED: dict[str, float] = {NAMES[0]: 0.4, NAMES[1]: -0.3, NAMES[2]: 0.3}
 
 
 def by_energy(mechanism: eq.Mechanism, q: np.ndarray) -> np.ndarray:
@@ -62,7 +62,9 @@ def test_one_pose_is_balanced_to_rounding():
 
 
 def test_what_cannot_be_is_proved_and_equals_another_program():
-    poses = [{NAMES[0]: a, NAMES[1]: b, NAMES[2]: c} for a, b, c in ((0.4, -1, 0.3), (1.0, -0.2, 0), (-0.3, 0.5, 0.4))]
+    poses: list[dict[str, float]] = [
+        {NAMES[0]: a, NAMES[1]: b, NAMES[2]: c} for a, b, c in ((0.4, -1, 0.3), (1.0, -0.2, 0), (-0.3, 0.5, 0.4))
+    ]
     found = eq.calibrate(LAMP, poses)
     shortest = Potential(LAMP)(found.poses).path.min(axis=0)
     least = independent(LAMP, found.poses, shortest)

@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,13 +53,14 @@ def test_what_a_slot_does_is_what_its_element_does(realise: str) -> None:
     made = mount(realise).element(own.field, x[:6], x[6], part, "spring")
     state = Potential(arm().with_springs([made]))(own.field.q)
     doing = own.doing(mount(realise), 0, x[None])
-    length = state.path[:, 0] - (made.law.cable if realise != "direct" else 0.0)
+    law: Any = made.law
+    length = state.path[:, 0] - (law.cable if realise != "direct" else 0.0)
     assert doing.length[0] == pytest.approx(length, abs=1e-12)
     pulls = length > part.free_length
     assert doing.torque[0][pulls] == pytest.approx(state.spring_torque[pulls, 0], abs=1e-9)
     if realise != "direct":
         assert pulls.all()
-        assert made.law.body_length == part.free_length
+        assert law.body_length == part.free_length
         at = np.linalg.norm(np.subtract(made.p_a, made.via[0].point))
         assert at >= length.max() - 1e-9  # the spring stays behind its eyelet
 

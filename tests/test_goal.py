@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,8 +16,10 @@ from equipoise.model.goal import Count, Goal, Gravity, Loads, Tool
 from equipoise.model.motion import Box, Listed, Motion, Where
 
 ARM = planar_arm([1, 2], [0.4, 0.3], [0.2, 0.1])
-TOOLS = (Tool("cup", "link3", ("0", "800 g"), (0.3, 0, 0), 3.0), Tool("plate", "link3", 1.0))
-FULL = Goal(Loads(TOOLS, (Gravity((0, 0, -9.81)), Gravity((9.81, 0, 0), 2.0)), "5 deg"),
+TOOL: Any = Tool  # texts with units and a single mass are read too
+TILT: Any = "5 deg"
+TOOLS = (TOOL("cup", "link3", ("0", "800 g"), (0.3, 0, 0), 3.0), TOOL("plate", "link3", 1.0))
+FULL = Goal(Loads(TOOLS, (Gravity((0, 0, -9.81)), Gravity((9.81, 0, 0), 2.0)), TILT),
             count=Count("peak", {"joint2": 2.0}, ("joint2", "joint3"), "effort"))  # fmt: skip
 
 

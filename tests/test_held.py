@@ -90,6 +90,7 @@ def test_a_part_keeps_what_its_list_says() -> None:
     item = kit(eq.check(found.mechanism), Options()).items[0]
     assert item.order == "part P-2"
     assert item.static == pytest.approx(300.0 / item.force[1], rel=1e-9)
+    assert item.static is not None
     assert item.static >= 1.2 - 1e-6
     assert any("pulley's error" in note for note in item.notes)
     strict = kit(eq.check(found.mechanism), Options(limits=Limits(safety=item.static + 0.1)))

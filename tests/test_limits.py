@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,7 +34,7 @@ TURN = 2 * np.pi * np.arange(8) / 8
 WHOLE = np.stack(np.meshgrid(TURN, TURN), axis=-1).reshape(-1, 2)
 
 
-def solved(goal: Goal, **options: object) -> eq.Design:
+def solved(goal: Goal, **options: Any) -> eq.Design:
     design = eq.solve(eq.Problem.of(ARM, span=1, radius=0.2, goal=goal), springs=2, **options)
     assert design.bound is not None
     assert design.bound <= design.residual * (1 + 1e-9)
@@ -67,6 +68,8 @@ def test_limits_are_kept(torque):
     less = solved(Goal(count=Count(torque), cost=Cost(stiffness=rates / 10)))
     assert sum(s.stiffness for s in less.mechanism.springs) <= rates / 10 * (1 + 1e-9)
     assert less.residual > free.residual
+    assert less.bound is not None
+    assert free.bound is not None
     assert less.bound > free.bound
     assert less.residual <= less.bound + 0.1 * less.unbalanced
     assert (less.exact_feasible, less.infeasible) == (None, None)
@@ -77,6 +80,8 @@ def test_energy_is_the_mean_that_is_stored():
     stored = float(Potential(free.mechanism)(WHOLE).springs.sum(axis=1).mean())
     less = solved(Goal(cost=Cost(energy=stored / 2)))
     assert Potential(less.mechanism)(WHOLE).springs.sum(axis=1).mean() <= stored / 2 * (1 + 1e-9)
+    assert less.bound is not None
+    assert free.bound is not None
     assert less.bound >= free.bound
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import pi, sqrt
+from typing import Any
 
 from equipoise.model.elements import Spring
 from equipoise.model.mechanism import Body, Capsule, Coupling, Joint, Mechanism, PointMass
@@ -47,7 +48,7 @@ def hinge(name: str, parent: str, child: str, x: float = 0.0, z: float = 0.0, **
     return Joint(name, "revolute", parent, child, (x, 0.0, z), axis=LIFT, **more)  # type: ignore[arg-type]
 
 
-def to_ground(name: str, link: str, a: float, b: float, k: float, parent: str = "world", **more: float) -> Spring:
+def to_ground(name: str, link: str, a: float, b: float, k: float, parent: str = "world", **more: Any) -> Spring:
     """The basic spring: from height `a` above the joint to distance `b` along the link."""
     return Spring(name, parent, (0.0, 0.0, a), link, (b, 0.0, 0.0), k, **more)
 

@@ -20,7 +20,7 @@ def within(mechanism: Mechanism, motions: Sequence[Motion]) -> Mechanism:
     if not motions:
         return mechanism
     tree = Tree.of(mechanism)
-    low = dict(zip(tree.coordinates, tree.rest.tolist(), strict=True))
+    low: dict[str, float] = dict(zip(tree.coordinates, tree.rest.tolist(), strict=True))
     high = dict(low)
     moved = {name for motion in motions for name in motion.coordinates}
     for name in moved & low.keys():

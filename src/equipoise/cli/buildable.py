@@ -82,7 +82,9 @@ def choice(
     """
     from ..hardware import Choice
 
-    room = {"max_length": max_length and options.positive_length(max_length, "--max-length")}
+    room: dict[str, float] = {}
+    if max_length:
+        room["max_length"] = options.positive_length(max_length, "--max-length")
     if max_force is not None:
         room["max_force"] = quantity(max_force, "force", "--max-force")
         if not room["max_force"] > 0:
@@ -98,5 +100,5 @@ def choice(
         objective=objective,
         seconds=seconds,
         seed=seed,
-        **{name: value for name, value in room.items() if value},
+        **room,
     )

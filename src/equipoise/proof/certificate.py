@@ -126,7 +126,7 @@ def _of_loops(mechanism: Mechanism) -> Certified:
     most, proof = forces(enclosure, loops, within)
     claim = {"energy": rounded(most + FLOOR, up=True), "within": _texts(within), "loops": loops}
     why = "loops: what holds at closed poses is about the energy"
-    left_out = dict.fromkeys(("torque", "bound", "fewest"), why)
+    left_out: dict[str, str] = dict.fromkeys(("torque", "bound", "fewest"), why)
     return Certified(_document(mechanism, data, {"closed": claim}, {"closed": proof}), left_out)
 
 

@@ -105,7 +105,7 @@ def _least(
 
     def double(terms: dict[Key, Any]) -> Array:
         values = np.array([complex(terms.get(key, 0)) for key in keys]) * sizes
-        return np.concatenate([values.real, values.imag])
+        return np.concatenate([values.real, values.imag]).astype(float)
 
     rest = double(energy)
     if not columns:

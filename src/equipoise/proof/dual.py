@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..model.arrays import Array, Integers
+from ..synthesis.convex.semidefinite import conic_solver
 from ..synthesis.convex.spring_block import SpringBlock, Upper, svec
 from .enclosure import Enclosure, Key, Terms
 
@@ -197,9 +198,9 @@ def _lift(block: SpringBlock) -> Array:
 
 def _solved(rows: Rows, limits: Sequence[Sequence[Multiplier]], stiffness: float) -> tuple[Array, list[Array], float]:
     """The dual solution in double precision: a trial torque, each pair's multipliers, and that of the stiffness."""
-    import clarabel
     from scipy import sparse
 
+    clarabel = conic_solver()
     columns, load = rows.columns
     unit = float(np.linalg.norm(load)) or 1.0
     Q, R = np.linalg.qr(np.column_stack([*columns, load]), mode="reduced")

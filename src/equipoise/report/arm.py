@@ -11,7 +11,7 @@ from ..model.arrays import Array
 from ..model.elements.laws.law import Look
 from . import style
 from .poses import View
-from .skeleton import COINCIDE, Bar, Point, Skeleton
+from .skeleton import COINCIDE, Bar, Moving, Point, Skeleton
 
 COILS, LEAST = 12, 4  # of a spring; a short one is drawn with fewer, that they stay apart
 THICK, MANY = 11.0, 12  # [pt] width of a body; thinner when there are many
@@ -67,7 +67,7 @@ class _Pen:
         depth = view.depth(skeleton.points(poses)[shown])
         self.near, self.range = float(depth.min()), max(float(np.ptp(depth)), 1e-9)
 
-    def at(self, point: Point) -> Array:
+    def at(self, point: Point | Moving) -> Array:
         return point.at(self.poses)[self.shown]
 
     def order(self, p: Array, first: float = 0.0) -> float:
@@ -107,7 +107,7 @@ class _Pen:
         look = {"marker": "s", "markersize": self.thick * 1.25, "markerfacecolor": style.INK}
         self.line(self.view.flat(p[None]), style.INK, 0, self.order(p, 1.2), markeredgecolor="white", **look)
 
-    def spring(self, line: tuple[Point, ...], colour: str, how: Look) -> None:
+    def spring(self, line: tuple[Point | Moving, ...], colour: str, how: Look) -> None:
         places = np.array([self.at(point) for point in line])
         order, flat = self.order(places.mean(axis=0), 2.0), self.view.flat(places)
         path = coiled(flat, 0.018 * self.size, 0.017 * self.size, how)

@@ -18,7 +18,7 @@ from ..model.arrays import Array
 from ..model.errors import InputError
 from ..model.mechanism import Mechanism
 from .poses import choose
-from .skeleton import Point, Skeleton
+from .skeleton import Moving, Point, Skeleton
 from .style import clean
 
 MM = 1000.0  # per metre
@@ -70,13 +70,13 @@ def to_text(mechanism: Mechanism) -> str:
     return stream.getvalue()
 
 
-def _places(mechanism: Mechanism) -> tuple[Skeleton, Callable[[Point], Array]]:
+def _places(mechanism: Mechanism) -> tuple[Skeleton, Callable[[Point | Moving], Array]]:
     """The skeleton, and where its points are at rest: (3,) [mm], with z = 0 in the plane of a planar mechanism."""
     skeleton, tree = Skeleton.of(mechanism), Tree.of(mechanism)
     view, _ = choose(mechanism, skeleton)
     poses = tree.poses(tree.rest[None])
 
-    def place(point: Point) -> Array:
+    def place(point: Point | Moving) -> Array:
         p = MM * point.at(poses)[0]
         return np.array([*view.flat(p), 0.0]) if view.planar else p
 

@@ -34,9 +34,9 @@ def identify_lines(found: Identified) -> Iterator[RenderableType]:
     yield table
     yield Text(f"noise of the measurement: {found.noise:.3g} N m (standard deviation of what these values leave)")
     for group in found.alike:
-        alone = "cannot be told from these measurements: it does not act on what was measured"
+        alone = f"{group[0]} cannot be told from these measurements: it does not act on what was measured"
         text = f"{' and '.join(group)} cannot be told apart: they do the same to the measured torques"
-        yield Text(text if len(group) > 1 else f"{group[0]} {alone}", style="yellow")
+        yield Text(text if len(group) > 1 else alone, style="yellow")
     if found.alike:
         yield Text("  weigh or measure one of them and say --known NAME, or --known masses", style="yellow")
     for number, turn in enumerate(found.turns, start=1):

@@ -51,7 +51,8 @@ def _panels(figure: Any, found: Playback) -> None:
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
         axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=10)
-    axes.set_xlabel("time [s]", color=style.INK)
+        if i == len(rows) - 1:
+            axes.set_xlabel("time [s]", color=style.INK)
     figure.text(
         0.02, 0.015, "from MuJoCo; potential energies are counted from the start", fontsize=10, color=style.FAINT
     )

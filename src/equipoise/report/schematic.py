@@ -14,7 +14,7 @@ from . import style
 from .arm import coiled, window
 from .drawing import SMALL, THICK, THIN, Drawing, Label, Line, Pair
 from .poses import View, choose
-from .skeleton import Bar, Point, Skeleton
+from .skeleton import Bar, Moving, Point, Skeleton
 
 WIDTH, HEIGHT = 160.0, 110.0  # [mm] of the picture
 ROW = 4.6  # [mm] a line of the legend
@@ -111,7 +111,7 @@ class _Pen:
             for letter, p in (*marks, ("k", line.mean(axis=0))):
                 self.label(symbols(self.mechanism, letter)[i], p, placed)
 
-    def at(self, point: Point) -> Array:
+    def at(self, point: Point | Moving) -> Array:
         """(2,) [mm] on the sheet."""
         x, y = self.view.flat(point.at(self.poses)[0])
         return np.array([(x - self.left) * self.scale, self.foot + (y - self.bottom) * self.scale])

@@ -21,8 +21,11 @@ def limited(J: Array, r: Array, widths: Sequence[int], done: Array, most: float)
     free = np.asarray(np.linalg.lstsq(J, -r, rcond=SINGULAR)[0], float)
     if most == inf or all(np.linalg.norm(part) <= most for part in _parts(done + free, widths)):
         return free
-    import clarabel
     from scipy import sparse
+
+    from ..synthesis.convex.semidefinite import conic_solver
+
+    clarabel = conic_solver()
 
     unit = float(np.linalg.norm(J, 2)) or 1.0
     H, g = J.T @ J / unit**2, J.T @ (r - J @ done) / unit**2

@@ -82,7 +82,10 @@ def _screws(mechanism: Mechanism) -> Iterator[tuple[int, What]]:
     for i, spring in enumerate(mechanism.springs):
         if isinstance(spring, Spring):
             yield i, "tighten"
-            yield from ((i, end) for end in ("p_a", "p_b") if any(getattr(spring, end)))
+            if any(spring.p_a):
+                yield i, "p_a"
+            if any(spring.p_b):
+                yield i, "p_b"
 
 
 def _best(mechanism: Mechanism, screws: Sequence[tuple[int, What]], start: Array, q: Array) -> Array:

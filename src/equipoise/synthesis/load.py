@@ -125,9 +125,9 @@ def cone(g: Array, tilt: float) -> list[Array]:
 def frame(g: Array) -> Iterable[Array]:
     """Three unit vectors at right angles, the first along g (3,)."""
     axis = g / (np.linalg.norm(g) or 1.0)
-    first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    first = np.asarray(np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))]), float)
     first /= np.linalg.norm(first)
-    return axis, first, np.cross(axis, first)
+    return axis, first, np.asarray(np.cross(axis, first), float)
 
 
 def extremes(torque: Array, g: Array, tilt: float) -> tuple[Array, Array]:

@@ -143,7 +143,7 @@ class Problem:
             given["span"] = None
         given["regions"] = options.regions or {}
         asked_for = ("counterweights", "cams", "torsion", "tune")
-        given["beside"] = beside(mechanism, *(given.pop(name) for name in asked_for), bool(goal.poses.motions))
+        given["beside"] = beside(mechanism, *(given.pop(name) for name in asked_for), moves=bool(goal.poses.motions))
         mechanism = without(mechanism, given["beside"])
         problem = Problem(mechanism, **given)
         written = stated(goal, problem)

@@ -98,8 +98,8 @@ def score(mechanism: Source) -> Score | None:
     same = isinstance(made.get("goal"), Mapping) and made["goal"] == mechanism.goal.to_dict()
     bound = made.get("bound") if same else None
     terms = Terms.of(mechanism.goal.count, Tree.of(mechanism).coordinates)
-    found = [_left(one) for one in (mechanism, mechanism.with_springs(()))]
-    return Score(mechanism.goal, terms, *found, bound if isinstance(bound, float) else None)
+    left, bare = _left(mechanism), _left(mechanism.with_springs(()))
+    return Score(mechanism.goal, terms, left, bare, bound if isinstance(bound, float) else None)
 
 
 def _left(mechanism: Mechanism) -> float:

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ..model.arrays import Array
 from ..model.elements.laws.law import Look
 from ..report import style
-from ..report.skeleton import Point, Skeleton
+from ..report.skeleton import Moving, Point, Skeleton
 from .meshes import PlacedMesh
 from .model import Model
 from .shapes import across, capsule, coil, colour, strut, wire
@@ -65,7 +65,7 @@ class Scene:
                 parts["coil"].color = colour(shares[i]) if on else FIXED
                 parts["ends"][0].position, parts["ends"][1].position = places[0], places[-1]
 
-    def world(self, point: Point) -> Array:
+    def world(self, point: Point | Moving) -> Array:
         """(3,) where a point of a body is now."""
         return point.at(self.model.tree.poses(self.model.q[None]))[0]
 

@@ -75,7 +75,12 @@ def polish(
 
     for level in range(1 + (LEVELLING if peak else 0)):
         found = least_squares(
-            lambda x: values(x, False), x, jac=lambda x: values(x, True), method="trf", max_nfev=rounds, x_scale=0.1
+            lambda x: values(x, False),
+            x,
+            jac=lambda x: values(x, True),  # pyright: ignore[reportArgumentType]  # a function too
+            method="trf",
+            max_nfev=rounds,
+            x_scale=0.1,
         )
         x = found.x
         moved = tuple(judge.inside(slot) for slot in made(x))

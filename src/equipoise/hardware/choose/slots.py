@@ -77,6 +77,7 @@ class Judge:
         t = self.table
         element = mount.element(self.field, x[:6], float(x[6]), self.catalogue[int(t.part[row])], "spring")
         arms, path = self.field.element(element)
+        assert element.law.free is not None
         stretch = path - element.law.free
         pull = float(t.tension[row]) + float(t.k[row]) * stretch
         per = len(arms) // len(path)

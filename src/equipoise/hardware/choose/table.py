@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...model.arrays import Array, Integers, frozen
+from ...model.arrays import Array, Booleans, Integers, frozen
 from ..sizing.limits import Limits
 from ..stock.part import Stock, endurance
 
@@ -45,12 +45,12 @@ class Table:
     body: Array
     mass: Array
     price: Array
-    pulls: Array
+    pulls: Booleans
 
     def __len__(self) -> int:
         return len(self.part)
 
-    def rows(self, which: Array) -> Table:
+    def rows(self, which: Booleans) -> Table:
         """Some of them."""
         return Table(**{name: values[which] for name, values in vars(self).items()})
 
@@ -81,7 +81,7 @@ class Table:
             reach = np.where(k > 0, (strongest + n * c) / (n * k), np.inf)
         table = Table(
             part, count, n * k, n * c, low, np.minimum(high, reach), top / n, bottom / n, n * tension, body, n * mass,
-            n * price, np.array([catalogue[i].kind == "extension" for i in part], bool),
+            n * price, np.array([catalogue[i].kind == "extension" for i in part.tolist()], bool),
         )  # fmt: skip
         return table.rows(table.high > table.low)
 

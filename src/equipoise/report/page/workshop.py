@@ -9,6 +9,7 @@ from ..._version import __version__
 from ...balance import Balance
 from ...energy.spring_use import SpringUse
 from ...hardware import Bill
+from ...hardware.realise.held import Kit
 from ...model.elements import Element
 from ...model.mechanism import Mechanism
 from ..body_sheet import body_drawings
@@ -21,7 +22,7 @@ from .pictures import inline
 TITLE = "For the workshop"
 
 
-def workshop_section(balance: Balance, made: Bill | str | None, date: str) -> Section:
+def workshop_section(balance: Balance, made: Bill | Kit | str | None, date: str) -> Section:
     """One page in plain words; `made` are the springs to wind, as far as they are known."""
     m = balance.mechanism
     by = f"{m.name}: made with equipoise {__version__}{f' on {date}' * bool(date)}."
@@ -91,7 +92,7 @@ def _forces(balance: Balance) -> Iterator[str]:
             yield f"The largest {what} of a spring is {most:.4g} {unit}, of {name}: {bears} to bear it."
 
 
-def _warnings(balance: Balance, made: Bill | str | None) -> Iterator[str]:
+def _warnings(balance: Balance, made: Bill | Kit | str | None) -> Iterator[str]:
     if isinstance(made, Bill):
         yield from made.warnings
     elif isinstance(made, str):

@@ -190,7 +190,7 @@ def _given(tree: Tree, poses: Iterable[Mapping[str, Amount]]) -> Array:
         for name, value, index in zip(tree.coordinates, row, tree.coordinate_rows, strict=True):
             low, high = tree.lower[index], tree.upper[index]
             if not low - 1e-9 <= value <= high + 1e-9:
-                limits = " to ".join(name.show(limit).removeprefix(f"{name} ") for limit in (low, high))
+                limits = " to ".join(name.show(float(limit)).removeprefix(f"{name} ") for limit in (low, high))
                 raise InputError(Fault(("pose", name), f"is outside its range, {limits}: found {name.show(value)}"))
         rows.append(row)
     if not rows:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...model.arrays import Array, Booleans, Integers, frozen
 from ...model.errors import EquipoiseError
+from ..convex.semidefinite import conic_solver
 from ..dials import Dial
 
 FIRST, CUTS, ROUNDS = 600, 100, 50  # rows of the first program, rows added to it at a time, and how often
@@ -79,14 +80,16 @@ def least(A: Array, b: Array, dials: Sequence[Dial], held: Held | None = None) -
     limits, sides = _polygons(dials)
     limits = limits * size
     if held is not None:
-        rows = held.A * size / held.unit
+        kept = held.A * size / held.unit
         most = max(held.most * (1 + CLOSE), NOTHING * held.unit) / held.unit
-        limits = np.vstack([limits, rows, -rows])
+        limits = np.vstack([limits, kept, -kept])
         sides = np.concatenate([sides, most - held.b / held.unit, most + held.b / held.unit])
     fixed = np.hstack([limits, np.zeros((len(limits), 1))])
     chosen = np.zeros(len(b), bool)
     chosen[np.argsort(-np.abs(b), kind="stable")[:FIRST]] = True
-    for _ in range(ROUNDS):
+    rounds = 0
+    while True:
+        rounds += 1
         rows, one = np.flatnonzero(chosen), np.ones((int(chosen.sum()), 1))
         found = linprog(
             np.append(np.zeros(len(size)), 1.0),
@@ -98,7 +101,8 @@ def least(A: Array, b: Array, dials: Sequence[Dial], held: Held | None = None) -
             raise EquipoiseError(f"the linear solver stopped: {found.message}")
         x = found.x[:-1] * size
         left = np.abs(A @ x + b)
-        if left.max(initial=0.0) <= found.fun * unit * (1 + CLOSE) + NOTHING * unit or chosen.all():
+        close = left.max(initial=0.0) <= found.fun * unit * (1 + CLOSE) + NOTHING * unit
+        if close or chosen.all() or rounds == ROUNDS:
             break
         chosen[np.argsort(-left, kind="stable")[:CUTS]] = True
     y = found.ineqlin.marginals
@@ -143,13 +147,15 @@ def nearest(groups: Sequence[Held], dials: Sequence[Dial], start: Array) -> Arra
             every.append(rows / (group.most * (1 + CLOSE)))
     rows = np.vstack([*every, zero[:0]])
     chosen = np.abs(rows @ np.append(start / size, 1.0)) > 0.5
-    for _ in range(ROUNDS):
+    rounds = 0
+    while True:
+        rounds += 1
         within = np.vstack([rows[chosen] - one, -rows[chosen] - one, limits])
         z = _least_distance(now / size, zero, within)
         if z is None:
             return start
         over = np.abs(rows @ np.append(z, 1.0)) > 1 + CLOSE
-        if not (over & ~chosen).any():
+        if not (over & ~chosen).any() or rounds == ROUNDS:
             break
         chosen |= over
     for x in (_projected(now / size, z, zero, within) * size, z * size):
@@ -169,9 +175,9 @@ def _polygons(dials: Sequence[Dial]) -> tuple[Array, Array]:
 
 def _least_distance(z0: Array, zero: Array, limits: Array) -> Array | None:
     """The point nearest to z0 with ``zero @ [z, 1] = 0`` and ``limits @ [z, 1] <= 0``; None where none is found."""
-    import clarabel
     from scipy import sparse
 
+    clarabel = conic_solver()
     settings = clarabel.DefaultSettings()
     settings.verbose, settings.max_threads = False, 1
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-11

@@ -100,7 +100,7 @@ class CounterweightBlock(Block):
 
     def _rows(self) -> Array:
         """What the energies of unit masses at `_ends` are in those of the unknowns (unknowns, unknowns)."""
-        return np.linalg.inv(self.part(self._shapes())).T
+        return np.asarray(np.linalg.inv(self.part(self._shapes())).T, float)
 
     def cones(self) -> Iterable[Cone]:
         yield Cone("second order", np.eye(SIZE))

@@ -79,7 +79,7 @@ def _back(level: LeastSquaresForm, now: Parts, steps: int) -> Parts:
 def _inside(level: LeastSquaresForm, now: Parts, within: Callable[[Array], Array]) -> Array:
     """(1, parts, 1 + shape) a step `within` a subspace, given by its projector, that does not leave the regions."""
     shape = (1, now.k.shape[1], 1 + now.u.shape[2])
-    F = np.eye(shape[1] * shape[2])
+    F, step = np.eye(shape[1] * shape[2]), np.zeros(shape[1] * shape[2])
     for _ in range(RIMS):
         step = within(F)
         smaller = F @ _blocks(free_steps(level, now, -step.reshape(shape))[0])

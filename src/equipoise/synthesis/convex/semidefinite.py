@@ -151,7 +151,7 @@ class Program:
     def _compiled(self, tolerance: float) -> Any:
         from scipy import sparse
 
-        clarabel = _solver()
+        clarabel = conic_solver()
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
@@ -214,14 +214,15 @@ def peak_program(reduced: LeastSquaresForm, L: Array, low: Array, high: Array, s
 
 
 def _cone(kind: str, rows: int) -> object:
-    clarabel = _solver()
+    clarabel = conic_solver()
     if kind == "semidefinite":
         return clarabel.PSDTriangleConeT((isqrt(8 * rows + 1) - 1) // 2)
     name = {"zero": "ZeroConeT", "nonnegative": "NonnegativeConeT", "second order": "SecondOrderConeT"}[kind]
     return getattr(clarabel, name)(rows)
 
 
-def _solver() -> Any:
+def conic_solver() -> Any:
+    """The module of the solver."""
     import clarabel  # a compiled module without type information
 
     return clarabel

@@ -156,10 +156,10 @@ class TwoAxisRocker:
         S = snapped(np.array(self.places[1]) + guide.CS * self.moment / size)
         k10, k11 = guide.stiffness_10(size, gravity), guide.stiffness_11(size, gravity, self.misprint)
         R, T = (0.0, self.C, 0.0), (self.at[0], self.at[1], self.at[2] + guide.BF + guide.FT)
-        ten = {"mass": guide.spring_10, "mass_split": 1 - guide.share_10}
-        yield Spring(f"spring 10{mark}", f"slider 9{mark}", R, self.rocker, S, k10, **ten)
-        eleven = {"mass": guide.spring_11, "mass_split": 1 - guide.share_11}
-        yield Spring(f"spring 11{mark}", self.upright, T, f"guide 8{mark}", (0.0, 0.0, guide.FU), k11, **eleven)
+        ten = Spring(f"spring 10{mark}", f"slider 9{mark}", R, self.rocker, S, k10)
+        yield replace(ten, mass=guide.spring_10, mass_split=1 - guide.share_10)
+        eleven = Spring(f"spring 11{mark}", self.upright, T, f"guide 8{mark}", (0.0, 0.0, guide.FU), k11)
+        yield replace(eleven, mass=guide.spring_11, mass_split=1 - guide.share_11)
         if self.own.any():
             lengths, B = (guide.BF, guide.BF), np.array(self.at)
             three = rocker_spring(f"spring 3{mark}", self.own, self.cross, Z, B, lengths, gravity, base=self.upright)
