@@ -39,9 +39,10 @@ ARMS = (
     arm([2, 1], [0.3, 0.5], [0.1, 0.3]),
     arm([1.5, 1], [0.2, 0.2], [0.15, 0.05]),
 )
+CUP, PLATE = Tool("cup", "link3", (0.8, 0.8)), Tool("plate", "link3", (0.3, 0.3), (0.2, 0, 0.1), 3.0)
 GOALS: dict[str, dict[str, dict[str, Any]]] = {
     "payload": {"loads": {"tools": (Tool("cup", "link3", (0, 0.8), (0.3, 0, 0)),)}},
-    "tools": {"loads": {"tools": (Tool("cup", "link3", 0.8), Tool("plate", "link3", 0.3, (0.2, 0, 0.1), 3.0))}},
+    "tools": {"loads": {"tools": (CUP, PLATE)}},
     "gravity": {"loads": {"gravity": (Gravity((0, 0, -9.81)), WALL)}},
     "tilt": {"loads": {"tilt": 0.2}},
     "list": {"poses": {"listed": Listed(("joint2", "joint3"), ((0.5, 0), (1.0, 1.0), (2.0, -1)), (1, 3, 2))}},
