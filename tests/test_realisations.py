@@ -215,7 +215,8 @@ def test_springs_of_lin2010_table_3() -> None:
     design = lin2010.balanced().mechanism
     balance = eq.check(design, samples=1000)
     made = bill(
-        replace(balance, mechanism=replace(design, workspace=eq.Workspace(1000))), Options(envelope=Envelope(0.04, 0.6))
+        replace(balance, mechanism=replace(design, workspace=eq.Workspace(1000))),
+        Options(limits=Limits(safety=1.0, fatigue=0.0), envelope=Envelope(0.04, 0.6)),
     )
     assert made.complete
     found = made.to_dict()["springs"]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, replace
 from io import StringIO
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from ...model.validate import printable
 from ..sizing.wire import WIRES
 from .part import Catalogue, Stock
 
+LARGEST = 1e12  # of any number of a part: no spring is so large, stiff or strong
 COLUMNS = {
     "part": ("text", "what it is ordered by; must be unique"),
     "kind": ("text", "extension, compression, gas or torsion"),
@@ -196,6 +197,8 @@ def _stock(row: list[Any], places: Mapping[str, Column], constants: Mapping[str,
         if not values[name] >= least:
             limit = "more than" if least else "at least"
             raise InputError(Fault((name,), f"must be {limit} 0, found {values[name]:g}"))
+        if values[name] > LARGEST and values[name] != inf:
+            raise InputError(Fault((name,), f"must be at most {LARGEST:g} in SI units, found {values[name]:g}"))
     if values.get("wire") and values["wire"] not in WIRES:
         raise InputError(Fault(("wire",), f"unknown grade {nearest(values['wire'], WIRES)}", tuple(WIRES)))
     if kind == "gas":
