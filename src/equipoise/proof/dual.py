@@ -1,8 +1,8 @@
 """A lower bound of the torque that any springs leave, and the numbers that prove it (docs/certificates.md).
 
-The program is that of THEORY section 4, with a limit on the sum of all stiffnesses: springs of any stiffness could
-make use of axes that miss each other by a rounding error. Its dual solution is a trial torque, and for each pair of
-bodies multipliers of what its regions keep from being negative. Both are rounded, and what they prove is enclosed.
+The program is that of docs/theory.md, section 4, with a limit on the sum of all stiffnesses: springs of any stiffness
+could make use of axes that miss each other by a rounding error. Its dual solution is a trial torque, and for each pair
+of bodies multipliers of what its regions keep from being negative. Both are rounded, and what they prove is enclosed.
 """
 
 from __future__ import annotations
