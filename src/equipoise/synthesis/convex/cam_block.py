@@ -22,16 +22,15 @@ from ...model.errors import Fault, InputError
 from ...model.mechanism import Mechanism
 from ...model.names import Names
 from ..cam.terms import terms
-from ..region import free_directions, project
-from .blocks import Block, Cone
+from .ball_block import BallBlock
+from .blocks import Cone
 
 HARMONICS = 4
-BALL = np.array(False)
 ROUNDING = 1e-9  # of the largest coefficient: one that is zero
 
 
 @dataclass(frozen=True)
-class CamBlock(Block):
+class CamBlock(BallBlock):
     """A cam on the sum of ratio times angle of `joints`.
 
     The unknowns are an amplitude, which does nothing itself, and the coefficients of cosines and sines of one to
@@ -91,21 +90,6 @@ class CamBlock(Block):
 
     def cones(self) -> Iterable[Cone]:
         yield Cone("second order", np.eye(self.unknowns))
-
-    def part(self, u: Array) -> Array:
-        return np.hstack([np.ones((len(u), 1)), u])
-
-    def slopes(self, u: Array) -> Array:
-        return np.tile(np.eye(self.unknowns)[1:], (len(u), 1, 1))
-
-    def project(self, u: Array) -> Array:
-        return project(u, BALL)
-
-    def free(self, u: Array, gradient: Array) -> Array:
-        return free_directions(u, gradient, BALL)
-
-    def within(self, u: Array) -> tuple[Array, Array]:
-        return 2 * u[None], np.array([1 - u @ u])
 
     def cost(self, energy: Array) -> Array:
         return np.eye(self.unknowns)[0]

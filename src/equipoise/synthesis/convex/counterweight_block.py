@@ -22,17 +22,16 @@ from ...model.names import Names
 from ...model.region import EXTREME, Region
 from ...model.units import Amount, quantity
 from ..mounts import Mounts
-from ..region import free_directions, project
-from .blocks import Block, Cone
+from .ball_block import BallBlock
+from .blocks import Cone
 
 SIZE = 4  # a mass and three moments
-BALL = np.array(False)
 ROUNDING = 1e-12  # of the radius: a coordinate that is zero
 EARTH = 9.81  # [m/s^2] what mass times radius is worth beside the energy of springs
 
 
 @dataclass(frozen=True)
-class CounterweightBlock(Block):
+class CounterweightBlock(BallBlock):
     """A mass on `body`, within `radius` [m] of its origin.
 
     The unknowns are m and m p / radius [kg]; a part is a weight, its shape p / radius.
@@ -104,21 +103,6 @@ class CounterweightBlock(Block):
 
     def cones(self) -> Iterable[Cone]:
         yield Cone("second order", np.eye(SIZE))
-
-    def part(self, u: Array) -> Array:
-        return np.hstack([np.ones((len(u), 1)), u])
-
-    def slopes(self, u: Array) -> Array:
-        return np.tile(np.eye(SIZE)[1:], (len(u), 1, 1))
-
-    def project(self, u: Array) -> Array:
-        return project(u, BALL)
-
-    def free(self, u: Array, gradient: Array) -> Array:
-        return free_directions(u, gradient, BALL)
-
-    def within(self, u: Array) -> tuple[Array, Array]:
-        return 2 * u[None], np.array([1 - u @ u])
 
     def cost(self, energy: Array) -> Array:
         """A weight's energy says nothing; its mass does."""
